@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/analysis/fit_orders.hpp"
+#include "solver/analysis/table.hpp"
+#include "solver/time/integrate.hpp"
+
+namespace esfem {
+
+/// Options that every convergence experiment takes; what is not given follows the preset.
+struct Options {
+  std::string preset = "paper";          ///< --preset check|paper
+  std::optional<int> degree;             ///< --degree 1..4
+  std::optional<int> bdf;                ///< --bdf 1..5
+  std::optional<std::vector<int>> levels;  ///< --levels 0,1,2 or 0-4: mesh levels
+  std::optional<std::vector<int>> steps;   ///< --steps 0,1 or 0-7: exponents k of tau = tau_0 2^-k
+  std::optional<Start> start;            ///< --start exact|cascade|substeps:K
+  std::vector<std::string> meshes;       ///< --mesh FILE (repeatable): these instead of generated meshes
+};
+
+/// One independent run.
+struct Cell {
+  std::string name;           ///< unique, no blanks or slashes, e.g. "h2_tau5"
+  double cost;                ///< estimated seconds on one core
+  std::function<Row()> run;   ///< fills everything of the row but cell, seconds, peak_memory_mb
+};
+
+/// One experiment: a grid of cells, and how its orders are fitted.
+struct Experiment {
+  std::string stem, paper;
+  std::string help;  ///< what it computes, units, sample command lines: the head of --help
+  std::function<void(CLI::App&)> add_options = [](CLI::App&) {};  ///< options of this experiment alone
+  std::function<std::vector<Cell>(const Options&)> cells;
+  std::function<nlohmann::json(const Options&)> parameters;  ///< what the table's "parameters" say
+  RowRange fit_range;
+};
+
+/// The main function of every experiment: --help, --list, --cell, --collect, --output, presets, progress with ETA,
+/// provenance, exit codes.
+int run_experiment(const Experiment& experiment, int argc, char** argv);
+
+/// Runs `body` and maps exceptions to a one-line message on standard error and an exit code.
+int guarded_main(const std::function<int()>& body);
+
+}  // namespace esfem

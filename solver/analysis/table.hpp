@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace esfem {
+
+/// errors["x"]["nodal_L2"]: quantity -> norm -> value. Norms: nodal_L2, nodal_H1, nodal_H1_semi, lifted_L2, lifted_H1,
+/// lifted_H1_semi; H1 is the full norm.
+using Errors = std::map<std::string, std::map<std::string, double>>;
+
+/// One run of an experiment.
+struct Row {
+  std::string cell;
+  int level = 0;
+  double h = 0;  ///< measured largest edge length of the initial triangulation
+  int nodes = 0;
+  double tau = 0;
+  int steps = 0;
+  std::string status = "ok";  ///< "ok" or "failed: why"
+  double seconds = 0;
+  double peak_memory_mb = 0;
+  Errors errors;                                      ///< maxima over time
+  std::map<std::string, std::vector<double>> series;  ///< "t" and what was recorded at these times
+  nlohmann::json more = nlohmann::json::object();     ///< further keys of the row (variant, ...)
+};
+
+/// A fitted order with its 95% interval.
+struct Fit {
+  std::string quantity, norm, variable;  ///< variable: "h" | "tau"
+  double order = 0, ci95[2] = {0, 0};
+  int rows_used = 0;
+};
+
+/// Schema "esfem-table/1" of results/<preset>/<stem>.json. A cell file is a table with one row.
+struct Table {
+  std::string experiment, paper;
+  nlohmann::json parameters = nlohmann::json::object(), provenance = nlohmann::json::object();
+  std::vector<Row> rows;
+  std::vector<Fit> fits;
+};
+
+nlohmann::json to_json(const Table& table);
+/// Throws InputError naming `source`, the row and the key when something is missing, of the wrong type or another schema.
+Table table_from_json(const nlohmann::json& json, const std::string& source);
+
+/// Reads and parses a JSON file; InputError with file and line when it is missing or not JSON.
+nlohmann::json read_json(const std::string& file);
+/// Writes via a temporary name in the same folder and a rename, so that no reader ever sees half a file.
+/// "-" is standard output.
+void write_file(const std::string& file, const std::string& text);
+
+/// The table as CSV (one line a row, one column an error), and as LaTeX (booktabs) with EOC columns as the papers print
+/// them: one block per mesh with EOC in tau between neighbouring step sizes, and one per step size with EOC in the
+/// measured h.
+std::string to_csv(const Table& table);
+std::string to_latex(const Table& table);
+
+}  // namespace esfem

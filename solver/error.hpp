@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace esfem {
+
+/// Exit codes of every executable.
+enum ExitCode { exit_done = 0, exit_usage = 1, exit_numerics = 2, exit_claim = 3 };
+
+/// Wrong usage or bad input (exit 1). The message is one line: what was found, where, and what was expected.
+struct InputError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// The numerics failed (exit 2): non-finite value, degenerate element (with its number), factorisation failed.
+/// Low levels say what and where; the time loop adds the step and the time by `at`.
+struct NumericsError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+  /// The same error with step and time in front.
+  NumericsError at(int step, double t) const;
+};
+
+/// printf-style formatting into a std::string ("%.17g" and so on).
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+
+}  // namespace esfem

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "solver/surfaces/surface.hpp"
+#include "solver/types.hpp"
+
+namespace esfem {
+
+/// A closed triangulated surface whose elements are images of the reference triangle under P_k maps.
+struct Mesh {
+  int degree = 1;         ///< k of the element maps, 1..4
+  Field nodes;            ///< N x 3
+  Connectivity elements;  ///< E x (k+1)(k+2)/2, node order of fe/lagrange.hpp, outward orientation
+};
+
+/// The P_k mesh with the same element maps as the given one (nodes at the reference nodes of degree k, not projected
+/// onto any surface). The same degree gives the mesh unchanged, with its node order.
+Mesh lagrange_mesh(const Mesh& mesh, int degree);
+
+/// The corner triangles as a P1 mesh; keeps the corners' order, drops the other nodes.
+Mesh corner_mesh(const Mesh& mesh);
+
+/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws NumericsError with
+/// the node's number when a node is too far from the surface.
+void project_nodes(Mesh& mesh, const Surface& surface);
+
+/// Shape of the triangles between the corners (straight edges), at positions x (N x 3).
+struct MeshQuality {
+  double h;                  ///< largest edge length
+  double h_min;              ///< smallest edge length
+  double min_angle;          ///< smallest angle, degrees
+  double mean_radius_ratio;  ///< mean of 2 (inradius)/(circumradius), 1 for equilateral triangles
+  double min_radius_ratio;
+  int worst_element;  ///< the element with the smallest radius ratio (0-based)
+};
+MeshQuality mesh_quality(const Connectivity& elements, const Field& x);
+
+/// Vertices - edges + triangles of the corner triangulation.
+int euler_characteristic(const Mesh& mesh);
+
+/// Subdivided icosahedron projected onto the sphere: 10·4^s + 2 vertices.
+Mesh icosphere(double radius, int subdivisions);
+/// Subdivided octahedron projected onto the sphere: 4·4^s + 2 vertices.
+Mesh octasphere(double radius, int subdivisions);
+/// n_major x n_minor grid on a torus, each cell cut along alternating diagonals where that is possible.
+Mesh torus_grid(double major, double minor, int n_major, int n_minor);
+
+}  // namespace esfem

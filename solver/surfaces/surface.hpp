@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <ceres/jet.h>
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "solver/types.hpp"
+
+namespace esfem {
+
+/// Value, gradient and Hessian of a level set function at a point.
+struct LevelSetJet {
+  double value;
+  Vec3 gradient;
+  Mat3 hessian;
+};
+
+/// A smooth closed surface {d = 0} with d < 0 inside, so that nu = grad d/|grad d| points outward.
+struct Surface {
+  std::string name;
+  std::map<std::string, double> parameters;
+  std::function<LevelSetJet(const Vec3&)> level_set;
+  std::function<double(const Vec3&)> level;  ///< d alone (cheaper; for the mesher)
+  double bounding_radius;                    ///< the surface lies inside this ball around the origin
+  double smallest_curvature_radius;          ///< min over the surface of 1/max(|kappa_1|, |kappa_2|)
+  int euler_characteristic;
+
+  /// Outward unit normal of the level set through y. Pointwise; y need not lie on the surface.
+  Vec3 normal(const Vec3& y) const;
+  /// Extended Weingarten map grad_Gamma nu = P (Hess d) P / |grad d| of the level set through y; symmetric, A nu = 0.
+  Mat3 weingarten(const Vec3& y) const;
+  /// Mean curvature kappa_1 + kappa_2 = tr grad_Gamma nu (kll19 (2.2)); 2/R on a sphere.
+  double mean_curvature(const Vec3& y) const;
+  /// The closest point of the surface, to 1e-12 of the bounding radius, for x near it (within the reach).
+  /// Throws NumericsError when Newton's iteration does not converge.
+  Vec3 closest_point(const Vec3& x) const;
+};
+
+/// A surface from a functor with `template <class T> T operator()(const T& x1, const T& x2, const T& x3) const`:
+/// gradient and Hessian come from Ceres Jets, so the formula of d is all that one writes.
+template <class LevelSet>
+Surface make_surface(std::string name, LevelSet d, double bounding_radius, double smallest_curvature_radius,
+                     int euler_characteristic, std::map<std::string, double> parameters = {}) {
+  auto jet = [d](const Vec3& y) {
+    using Jet1 = ceres::Jet<double, 3>;
+    using Jet2 = ceres::Jet<Jet1, 3>;
+    Jet2 arguments[3];
+    for (int i = 0; i < 3; ++i) {
+      arguments[i] = Jet2(Jet1(y[i], i));
+      arguments[i].v[i] = Jet1(1.0);
+    }
+    const Jet2 value = d(arguments[0], arguments[1], arguments[2]);
+    LevelSetJet result;
+    result.value = value.a.a;
+    for (int i = 0; i < 3; ++i) {
+      result.gradient[i] = value.v[i].a;
+      for (int j = 0; j < 3; ++j) result.hessian(i, j) = value.v[i].v[j];
+    }
+    return result;
+  };
+  auto level = [d](const Vec3& y) { return d(y[0], y[1], y[2]); };
+  return {std::move(name), std::move(parameters), jet, level, bounding_radius, smallest_curvature_radius,
+          euler_characteristic};
+}
+
+/// {|x| = radius}
+Surface sphere(double radius);
+/// {x1²/a² + x2²/b² + x3²/c² = 1}
+Surface ellipsoid(double a, double b, double c);
+/// Torus around the x3 axis: tube of radius minor around a circle of radius major > minor.
+Surface torus(double major, double minor);
+/// kll19 §13.2: d = x1² + x2² + 2 x3² (x3² - 199/200) - 0.04
+Surface dumbbell();
+
+/// One entry of the list of named surfaces: what `evolve` and `--help` know.
+struct NamedSurface {
+  std::string name;
+  std::string parameters;  ///< for --help, e.g. "axes: [a, b, c] (default [1, 1, 0.6])"
+};
+std::vector<NamedSurface> named_surfaces();
+
+}  // namespace esfem
