@@ -3,8 +3,8 @@
 
 namespace esfem {
 
-/// Eight doubles, one per element of a batch: arithmetic on a Pack is arithmetic on eight elements at once, which the
-/// compiler turns into one AVX-512, two AVX2 or four SSE2 instructions.
+/// Eight doubles, one per element of a batch: arithmetic on a Pack is arithmetic on eight elements at once,
+/// which the compiler turns into one AVX-512, two AVX2 or four SSE2 instructions.
 using Pack = double __attribute__((vector_size(64)));
 constexpr int pack_size = 8;
 

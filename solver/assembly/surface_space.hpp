@@ -25,10 +25,10 @@ struct Integrand {
   Pack flux[fluxes > 0 ? fluxes : 1][3];
 };
 
-/// S_h[x] of kll19 §3.1: isoparametric P_k functions on the surface Gamma_h[x] that the nodal vector x determines.
-/// Topology, sparsity and scatter map are fixed at construction; matrices and loads are filled for any x.
-/// Every function of x throws NumericsError with the element's number when an element is degenerate (Jacobian not
-/// positive relative to the element's size, or not finite).
+/// S_h[x] of kll19 §3.1: isoparametric P_k functions on the surface Gamma_h[x] that the nodal vector x
+/// determines. Topology, sparsity and scatter map are fixed at construction; matrices and loads are filled
+/// for any x. Every function of x throws NumericsError with the element's number when an element is
+/// degenerate (Jacobian not positive relative to the element's size, or not finite).
 class SurfaceSpace {
  public:
   SurfaceSpace(const Mesh& mesh, const Quadrature& rule);
@@ -49,10 +49,12 @@ class SurfaceSpace {
 
   /// Integral of weight phi_i phi_j; weight(const PointData<inputs>&) -> Pack, u: N x inputs.
   template <int inputs, class Weight>
-  void assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight, SymmetricMatrix& out) const;
+  void assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight,
+                              SymmetricMatrix& out) const;
 
   /// Load functionals: out (N x outputs) = integral of value phi_j + flux . grad phi_j over Gamma_h[x], where
-  /// integrand(const PointData<inputs>&, Integrand<outputs, fluxes>&) fills value and flux from u (N x inputs).
+  /// integrand(const PointData<inputs>&, Integrand<outputs, fluxes>&) fills value and flux from u (N x
+  /// inputs).
   template <int inputs, int outputs, int fluxes, class Function>
   void assemble_load(const Field& x, const Field& u, const Function& integrand, Field& out) const;
 

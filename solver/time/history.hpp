@@ -8,14 +8,16 @@
 namespace esfem {
 
 /// The newest states of a run, newest first: back(j) is state n-1-j when step n is computed.
-/// A State is a struct with `double t` and Field members. Nothing is allocated once `capacity` states are there.
+/// A State is a struct with `double t` and Field members. Nothing is allocated once `capacity` states are
+/// there.
 template <class State>
 class History {
  public:
   explicit History(int capacity);
   int size() const;
   const State& back(int j) const;
-  /// Takes the contents of `next` as the newest state; `next` gets the storage of the oldest (its values are stale).
+  /// Takes the contents of `next` as the newest state; `next` gets the storage of the oldest (its values are
+  /// stale).
   void push(State& next);
   /// Extrapolation (5.2): out = sum_{j<q} gamma_j back(j).*member.
   void extrapolate(int q, Field State::*member, Field& out) const;

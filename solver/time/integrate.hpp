@@ -9,8 +9,9 @@
 
 namespace esfem {
 
-/// How the states 1..q-1 are found. exact: from the exact solution. cascade: BDF 1, 2, .. with the same step size
-/// (global order 2 at most). substeps: the same method started by a cascade with step size tau/K, every K-th kept.
+/// How the states 1..q-1 are found. exact: from the exact solution. cascade: BDF 1, 2, .. with the same step
+/// size (global order 2 at most). substeps: the same method started by a cascade with step size tau/K, every
+/// K-th kept.
 struct Start {
   enum Kind { exact, cascade, substeps } kind = exact;
   int substeps_per_step = 1;  ///< K
