@@ -55,10 +55,10 @@ Quadrature conical_quadrature(int n) {
 }
 
 Quadrature default_quadrature(int fe_degree) {
-  static constexpr int gauss_points[] = {3, 5, 7, 9};  // for P1, P2, P3, P4; provisional
+  static constexpr int degree_of_rule[] = {4, 8, 10, 12};  // for P1, P2, P3, P4
   if (fe_degree < 1 || fe_degree > 4)
     throw InputError(format("degree %d of the finite elements: expected 1 to 4", fe_degree));
-  return conical_quadrature(gauss_points[fe_degree - 1]);
+  return symmetric_quadrature(degree_of_rule[fe_degree - 1]);
 }
 
 }  // namespace esfem
