@@ -43,15 +43,18 @@ struct Table {
   std::vector<Fit> fits;
 };
 
+/// Non-finite errors and series values become null, and a row "ok" with such an error becomes a failed one: a
+/// check must not pass by leaving it out. InputError when another number is not finite or a key in `more` is
+/// one of the row's.
 nlohmann::json to_json(const Table& table);
 /// Throws InputError naming `source`, the row and the key when something is missing, of the wrong type or
-/// another schema.
+/// another schema. null in errors and series is read as NaN (errors: in failed rows only).
 Table table_from_json(const nlohmann::json& json, const std::string& source);
 
 /// Reads and parses a JSON file; InputError with file and line when it is missing or not JSON.
 nlohmann::json read_json(const std::string& file);
 /// Writes via a temporary name in the same folder and a rename, so that no reader ever sees half a file.
-/// "-" is standard output.
+/// "-" is standard output; devices and pipes are written directly. InputError when it cannot be written.
 void write_file(const std::string& file, const std::string& text);
 
 /// The table as CSV (one line a row, one column an error), and as LaTeX (booktabs) with EOC columns as the
