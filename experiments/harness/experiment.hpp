@@ -29,6 +29,7 @@ struct Cell {
   std::string name;          ///< unique, no blanks or slashes, e.g. "h2_tau5"
   double cost;               ///< estimated seconds on one core
   std::function<Row()> run;  ///< fills everything of the row but cell, seconds, peak_memory_mb
+  Row planned = {};  ///< what is known beforehand (level, tau, steps, ...): the row of a run that fails
 };
 
 /// One experiment: a grid of cells, and how its orders are fitted.
@@ -42,10 +43,13 @@ struct Experiment {
 };
 
 /// The main function of every experiment: --help, --list, --cell, --collect, --output, presets, progress with
-/// ETA, provenance, exit codes.
+/// ETA, provenance, exit codes. It restarts the program once to limit the threads of its libraries
+/// (threads.hpp): do nothing before it. A NumericsError of a cell becomes a row with status "failed: why";
+/// everything else ends the program.
 int run_experiment(const Experiment& experiment, int argc, char** argv);
 
-/// Runs `body` and maps exceptions to a one-line message on standard error and an exit code.
+/// Runs `body` and maps exceptions to a one-line message on standard error and an exit code: InputError 1,
+/// everything else 2. Programs that factorise call limit_threads before it.
 int guarded_main(const std::function<int()>& body);
 
 }  // namespace esfem
