@@ -71,7 +71,7 @@ def convergence_figure(rows, quantities, norm, variable, order, faster=()):
     """A figure with one panel per quantity: errors in `norm` against `variable` ("tau" or "h").
 
     A dashed line shows the theory's `order` in every panel, a dotted one the highest order of `faster` that some curve
-    of the panel follows (slope within 0.35). All panels span equally many decades: equal orders have equal slopes to the eye.
+    of the panel follows (slope within 0.35). All panels span equally many decades: equal orders look equally steep.
     Failed runs are counted under the figure. Raises TableError when there is nothing to show.
     """
     panels = {quantity: curves(rows, quantity, norm, variable) for quantity in quantities}
@@ -138,12 +138,13 @@ def _frame(panels, labels, notes):
     bottom = X_LABELS + LINE * len(notes)
     height = top + rows * PANEL_HEIGHT + (rows - 1) * (GAP_Y + TITLE - 0.05) + bottom
     figure = Figure(figsize=(style.WIDTH, height))
-    width = (style.WIDTH - LEFT - RIGHT - (columns - 1) * GAP_X) / columns
+    width = min((style.WIDTH - LEFT - RIGHT - (columns - 1) * GAP_X) / columns, 1.8 * PANEL_HEIGHT)
+    margin = (style.WIDTH - LEFT - RIGHT - (columns - 1) * GAP_X - columns * width) / 2
     all_axes = []
     for i in range(panels):
         row, column = divmod(i, columns)
         y = height - top - PANEL_HEIGHT - row * (PANEL_HEIGHT + GAP_Y + TITLE - 0.05)
-        x = LEFT + column * (width + GAP_X)
+        x = LEFT + margin + column * (width + GAP_X)
         axes = figure.add_axes([x / style.WIDTH, y / height, width / style.WIDTH, PANEL_HEIGHT / height])
         axes.set_xscale("log")
         axes.set_yscale("log")
@@ -178,7 +179,7 @@ def _scale_and_reference(all_axes, lines, order, faster, variable):
     for axes, y_range, references in zip(all_axes, y_ranges, places):
         axes.set_xlim(10**x_range)
         axes.set_ylim(10**y_range)
-        style.log_ticks(axes.xaxis, *10**x_range)
+        style.log_ticks(axes.xaxis, *10**x_range, _size_in_points(axes)[0])
         for (label, dashes), placement in references or []:
             _draw_reference(axes, label, dashes, placement)
 

@@ -17,7 +17,8 @@ def draw(table, norm):
     degree, bdf = parameters.get("degree", 2), parameters.get("bdf", 3)
     rows = table["rows"]
     yield "kll19/fig13_1", convergence_figure(rows, QUANTITIES, norm, "tau", order=bdf)
-    yield "kll19/fig13_2", convergence_figure(rows, QUANTITIES, norm, "h", order=degree, faster=(degree + 1, degree + 2))
+    yield "kll19/fig13_2", convergence_figure(rows, QUANTITIES, norm, "h", order=degree,
+                                              faster=(degree + 1, degree + 2))
 
 
 if __name__ == "__main__":

@@ -17,10 +17,10 @@ class _Parser(argparse.ArgumentParser):
 def run(experiment, draw, description, default_norm):
     """The main function of a plotting script: `SCRIPT TABLE FOLDER [--norm NORM]`.
 
-    `draw(table, norm)` yields (name, figure), name being e.g. "kll19/fig13_1"; each is written to FOLDER as PDF and PNG.
+    `draw(table, norm)` yields (name, figure), name being e.g. "kll19/fig13_1"; each goes to FOLDER as PDF and PNG.
     Anything wrong with the input is one line on standard error and exit 1.
     """
-    parser = _Parser(description=description)
+    parser = _Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", help=f"results/PRESET/{experiment}.json")
     parser.add_argument("folder", help="where figures go, e.g. figures")
     parser.add_argument("--norm", choices=NORMS, default=default_norm, metavar="NORM",

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one style of all figures. Importing it selects matplotlib's Agg backend (no display) and sets the fonts and lines.
+"""The one style of all figures. Importing it selects matplotlib's Agg backend (no display), sets fonts and lines.
 
 Sizes are print sizes: a figure is WIDTH wide and is included in a page without scaling, so 8 pt here is 8 pt on paper.
 """
+import math
 import os
 
 import matplotlib
@@ -55,16 +56,22 @@ def line_styles(count):
         t = i / max(count - 1, 1)
         marker = MARKERS[i % len(MARKERS)]
         size = (5.5 - 2 * t) * (1.4 if marker == "*" else 1)  # a star of the same size looks smaller
-        styles.append({"color": colours(0.84 * t), "marker": marker, "markersize": size, "markerfacecolor": "white",
+        styles.append({"color": colours(0.8 * t), "marker": marker, "markersize": size, "markerfacecolor": "white",
                        "markeredgewidth": 0.9})
     return styles
 
 
-def log_ticks(axis, low, high, few=8):
-    """Labels a logarithmic axis over [low, high] with round numbers when these are few, else with powers of ten."""
+def log_ticks(axis, low, high, length):
+    """Labels a horizontal logarithmic axis over [low, high], `length` points long, with round numbers.
+
+    When these do not fit or have too many digits, matplotlib's powers of ten stay.
+    """
     for mantissas in ((1, 1.5, 2, 3, 4, 5, 7), (1, 2, 5), (1, 3)):
         ticks = [m * 10.0**d for d in range(-4, 5) for m in mantissas if low <= m * 10.0**d <= high]
-        if low >= 1e-4 and high <= 1e4 and 2 <= len(ticks) <= few:
+        if low < 1e-4 or high > 1e4 or len(ticks) < 2:
+            continue
+        labels = [(length * math.log(tick / low) / math.log(high / low), 2.1 * len(f"{tick:g}") + 2) for tick in ticks]
+        if all(right - left >= half + other for (left, half), (right, other) in zip(labels, labels[1:])):
             axis.set_major_locator(ticker.FixedLocator(ticks))
             axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_locator(ticker.NullLocator())
@@ -72,7 +79,7 @@ def log_ticks(axis, low, high, few=8):
 
 
 def save(figure, stem):
-    """Writes stem.pdf and stem.png, each whole or not at all; the same figure gives the same bytes. Returns both names."""
+    """Writes stem.pdf and stem.png, each whole or not at all; equal figures give equal bytes. Returns both names."""
     folder, name = os.path.split(os.path.abspath(stem))
     os.makedirs(folder, exist_ok=True)
     written = []
