@@ -55,7 +55,9 @@ Quadrature conical_quadrature(int n) {
 }
 
 Quadrature default_quadrature(int fe_degree) {
-  static constexpr int degree_of_rule[] = {4, 8, 10, 12};  // for P1, P2, P3, P4
+  // For P1, P2, P3, P4: 6, 12, 16, 25 points. On spheres with h <= R/2 a 14x14 conical rule changes the error
+  // of the normal's elliptic equation (H1, nodal) by 1e-13, 7e-6, 1.4e-5, 5e-6 of itself.
+  static constexpr int degree_of_rule[] = {4, 6, 8, 10};
   if (fe_degree < 1 || fe_degree > 4)
     throw InputError(format("degree %d of the finite elements: expected 1 to 4", fe_degree));
   return symmetric_quadrature(degree_of_rule[fe_degree - 1]);

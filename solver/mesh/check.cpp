@@ -17,7 +17,7 @@ std::string label(const char* kind, int i, const std::vector<long>& tags, const 
   std::string text = format("%s %ld", kind, tags.empty() ? long(i) + 1 : tags[i]);
   if (!lines.empty())
     text += format(" (line %d)", lines[i]);
-  else if (tags.empty())
+  else
     text += " (counted from 1)";
   return text;
 }

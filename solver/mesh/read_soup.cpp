@@ -129,17 +129,17 @@ Announced announced_by_obj(const std::string& content, MeshOrigin& origin) {
 Announced announced_by_ascii_stl(const std::string& file, const std::string& content) {
   Announced announced;
   announced.elements = 0;
-  bool open = false;
+  bool started = false, open = false;
   int last = 1;
   for_each_line(content, [&](int number, const std::vector<std::string>& words) {
-    if (number == last && words[0] != "solid")
-      fail(file, number, "no STL file, the keyword solid or a binary file of 84 + 50 n bytes expected");
-    last = number + (number == last);
-    if (words[0] == "solid") open = true;
+    last = number;
+    if (words[0] == "solid") started = open = true;
     if (words[0] == "endsolid") open = false;
     announced.elements += words[0] == "facet";
-    return true;
+    return started;
   });
+  if (!started)
+    fail(file, last, "no STL file, the keyword solid or a binary file of 84 + 50 n bytes expected");
   if (open) fail(file, last, "the file ends here, endsolid expected");
   return announced;
 }
