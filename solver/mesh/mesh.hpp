@@ -22,7 +22,7 @@ Mesh lagrange_mesh(const Mesh& mesh, int degree);
 /// The corner triangles as a P1 mesh; keeps the corners' order, drops the other nodes.
 Mesh corner_mesh(const Mesh& mesh);
 
-/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws NumericsError
+/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws InputError
 /// with the node's number when a node is too far from the surface.
 void project_nodes(Mesh& mesh, const Surface& surface);
 
