@@ -325,6 +325,8 @@ TEST(ReadPolygons, OtherThanTriangles) {
 }
 
 TEST(ReadPolygons, NameTheLineOfABadNumber) {
+  EXPECT_THAT(complaint(replaced(off(octahedron()), "3 1 2 4", "999999999999999 1 2 4"), "off"),
+              HasSubstr("near line 10"));
   EXPECT_THAT(complaint(replaced(off(octahedron()), "0 1 0", "0 nan 0"), "off"),
               HasSubstr("line 4: coordinate 'nan'"));
   EXPECT_THAT(complaint(replaced(stl(octahedron()), "1 0 0", "inf 0 0"), "stl"),
