@@ -26,7 +26,8 @@ Mesh corner_mesh(const Mesh& mesh);
 /// with the node's number when a node is too far from the surface.
 void project_nodes(Mesh& mesh, const Surface& surface);
 
-/// Shape of the triangles between the corners (straight edges), at positions x (N x 3).
+/// Shape of the triangles between the corners (straight edges), at positions x (N x 3). Degenerate triangles
+/// have radius ratio 0. Throws InputError when there is no element.
 struct MeshQuality {
   double h;                  ///< largest edge length
   double h_min;              ///< smallest edge length
@@ -40,7 +41,8 @@ MeshQuality mesh_quality(const Connectivity& elements, const Field& x);
 /// Vertices - edges + triangles of the corner triangulation.
 int euler_characteristic(const Mesh& mesh);
 
-/// Subdivided icosahedron projected onto the sphere: 10·4^s + 2 vertices.
+/// Subdivided icosahedron projected onto the sphere: 10·4^s + 2 vertices. Throws InputError unless 0 <= s
+/// <= 10.
 Mesh icosphere(double radius, int subdivisions);
 /// Subdivided octahedron projected onto the sphere: 4·4^s + 2 vertices.
 Mesh octasphere(double radius, int subdivisions);

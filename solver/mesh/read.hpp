@@ -22,7 +22,8 @@ ReadMesh read_mesh(const std::string& file);
 /// inward orientation and returns the remark.
 std::string check_closed_surface(Mesh& mesh, const std::string& source);
 
-/// Writes a mesh of degree 1 or 2 as Gmsh MSH 4.1 (ASCII, 17 digits).
+/// Writes a mesh of degree 1 or 2 as Gmsh MSH 4.1 (ASCII, 17 digits: reading it gives the same bits).
+/// Throws InputError for a higher degree or when the file cannot be written.
 void write_msh(const Mesh& mesh, const std::string& file);
 
 }  // namespace esfem
