@@ -15,20 +15,21 @@ namespace esfem {
 
 /// Options that every convergence experiment takes; what is not given follows the preset.
 struct Options {
-  std::string preset = "paper";          ///< --preset check|paper
-  std::optional<int> degree;             ///< --degree 1..4
-  std::optional<int> bdf;                ///< --bdf 1..5
+  std::string preset = "paper";            ///< --preset check|paper
+  std::optional<int> degree;               ///< --degree 1..4
+  std::optional<int> bdf;                  ///< --bdf 1..5
   std::optional<std::vector<int>> levels;  ///< --levels 0,1,2 or 0-4: mesh levels
   std::optional<std::vector<int>> steps;   ///< --steps 0,1 or 0-7: exponents k of tau = tau_0 2^-k
-  std::optional<Start> start;            ///< --start exact|cascade|substeps:K
-  std::vector<std::string> meshes;       ///< --mesh FILE (repeatable): these instead of generated meshes
+  std::optional<Start> start;              ///< --start exact|cascade|substeps:K
+  std::vector<std::string> meshes;         ///< --mesh FILE (repeatable): these instead of generated meshes
 };
 
 /// One independent run.
 struct Cell {
-  std::string name;           ///< unique, no blanks or slashes, e.g. "h2_tau5"
-  double cost;                ///< estimated seconds on one core
-  std::function<Row()> run;   ///< fills everything of the row but cell, seconds, peak_memory_mb
+  std::string name;          ///< unique, no blanks or slashes, e.g. "h2_tau5"
+  double cost;               ///< estimated seconds on one core
+  std::function<Row()> run;  ///< fills everything of the row but cell, seconds, peak_memory_mb
+  Row planned = {};  ///< what is known beforehand (level, tau, steps, ...): the row of a run that fails
 };
 
 /// One experiment: a grid of cells, and how its orders are fitted.
@@ -41,11 +42,14 @@ struct Experiment {
   RowRange fit_range;
 };
 
-/// The main function of every experiment: --help, --list, --cell, --collect, --output, presets, progress with ETA,
-/// provenance, exit codes.
+/// The main function of every experiment: --help, --list, --cell, --collect, --output, presets, progress with
+/// ETA, provenance, exit codes. It restarts the program once to limit the threads of its libraries
+/// (threads.hpp): do nothing before it. A NumericsError of a cell becomes a row with status "failed: why";
+/// everything else ends the program.
 int run_experiment(const Experiment& experiment, int argc, char** argv);
 
-/// Runs `body` and maps exceptions to a one-line message on standard error and an exit code.
+/// Runs `body` and maps exceptions to a one-line message on standard error and an exit code: InputError 1,
+/// everything else 2. Programs that factorise call limit_threads before it.
 int guarded_main(const std::function<int()>& body);
 
 }  // namespace esfem

@@ -21,14 +21,16 @@ struct OrderFit {
   int rows_used = 0;
 };
 
-/// Fits log e = log(C_h h^p + C_tau tau^q) by Ceres with a robust loss; 95% intervals from the covariance (scaled by the
-/// residual variance, Student's t). When only one variable varies, the other term is a constant plateau.
-/// Throws InputError, which says how many rows there are and how many are needed, when the data cannot determine the
-/// orders (too few rows, no variation, errors that are not positive), NumericsError when Ceres finds no usable solution.
-OrderFit fit_orders(const std::vector<double>& h, const std::vector<double>& tau, const std::vector<double>& error);
+/// Fits log e = log(C_h h^p + C_tau tau^q) by Ceres with a robust loss; 95% intervals from the covariance
+/// (scaled by the residual variance, Student's t). When only one variable varies, the other term is a
+/// constant plateau. Throws InputError, which says how many rows there are and how many are needed, when the
+/// data cannot determine the orders (too few rows, no variation, errors that are not positive), NumericsError
+/// when Ceres finds no usable solution.
+OrderFit fit_orders(const std::vector<double>& h, const std::vector<double>& tau,
+                    const std::vector<double>& error);
 
-/// Fits for every quantity and norm of the rows with status "ok" in the range (max over rows of one norm > 1e-10, so
-/// that round-off is not fitted); quantities whose orders the data cannot determine are left out.
+/// Fits for every quantity and norm of the rows with status "ok" in the range (max over rows of one norm >
+/// 1e-10, so that round-off is not fitted); quantities whose orders the data cannot determine are left out.
 std::vector<Fit> fit_table(const Table& table, const RowRange& range);
 
 }  // namespace esfem

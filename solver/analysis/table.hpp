@@ -8,8 +8,8 @@
 
 namespace esfem {
 
-/// errors["x"]["nodal_L2"]: quantity -> norm -> value. Norms: nodal_L2, nodal_H1, nodal_H1_semi, lifted_L2, lifted_H1,
-/// lifted_H1_semi; H1 is the full norm.
+/// errors["x"]["nodal_L2"]: quantity -> norm -> value. Norms: nodal_L2, nodal_H1, nodal_H1_semi, lifted_L2,
+/// lifted_H1, lifted_H1_semi; H1 is the full norm.
 using Errors = std::map<std::string, std::map<std::string, double>>;
 
 /// One run of an experiment.
@@ -43,19 +43,23 @@ struct Table {
   std::vector<Fit> fits;
 };
 
+/// Non-finite errors and series values become null, and a row "ok" with such an error becomes a failed one: a
+/// check must not pass by leaving it out. InputError when another number is not finite or a key in `more` is
+/// one of the row's.
 nlohmann::json to_json(const Table& table);
-/// Throws InputError naming `source`, the row and the key when something is missing, of the wrong type or another schema.
+/// Throws InputError naming `source`, the row and the key when something is missing, of the wrong type or
+/// another schema. null in errors and series is read as NaN (errors: in failed rows only).
 Table table_from_json(const nlohmann::json& json, const std::string& source);
 
 /// Reads and parses a JSON file; InputError with file and line when it is missing or not JSON.
 nlohmann::json read_json(const std::string& file);
 /// Writes via a temporary name in the same folder and a rename, so that no reader ever sees half a file.
-/// "-" is standard output.
+/// "-" is standard output; devices and pipes are written directly. InputError when it cannot be written.
 void write_file(const std::string& file, const std::string& text);
 
-/// The table as CSV (one line a row, one column an error), and as LaTeX (booktabs) with EOC columns as the papers print
-/// them: one block per mesh with EOC in tau between neighbouring step sizes, and one per step size with EOC in the
-/// measured h.
+/// The table as CSV (one line a row, one column an error), and as LaTeX (booktabs) with EOC columns as the
+/// papers print them: one block per mesh with EOC in tau between neighbouring step sizes, and one per step
+/// size with EOC in the measured h.
 std::string to_csv(const Table& table);
 std::string to_latex(const Table& table);
 

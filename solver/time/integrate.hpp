@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "solver/error.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
 
-/// How the states 1..q-1 are found. exact: from the exact solution. cascade: BDF 1, 2, .. with the same step size
-/// (global order 2 at most). substeps: the same method started by a cascade with step size tau/K, every K-th kept.
+/// How the states 1..q-1 are found. exact: from the exact solution. cascade: BDF 1, 2, .. with the same step
+/// size (global order 2 at most). substeps: the same method started by a cascade with step size tau/K, every
+/// K-th kept.
 struct Start {
   enum Kind { exact, cascade, substeps } kind = exact;
   int substeps_per_step = 1;  ///< K
@@ -26,14 +29,121 @@ struct TimeGrid {
   Start start;
 };
 
-/// Runs a flow: calls observe(n, state) for n = 0..steps.
+/// Throws InputError unless 1 <= order <= 5, tau > 0, steps >= 0, K >= 1.
+void check_time_grid(const TimeGrid& grid);
+
+/// Throws NumericsError naming field and node when a value of the state is not finite.
+template <class State>
+void check_finite(const State& state) {
+  for (const NamedField<State>& field : State::fields) {
+    const Field& values = state.*field.member;
+    if (values.allFinite()) continue;
+    for (Eigen::Index i = 0; i < values.rows(); ++i)
+      if (!values.row(i).allFinite())
+        throw NumericsError(format("non-finite value of %s at node %td", field.name, i));
+  }
+}
+
+/// Adds step and time to the NumericsErrors of `body`.
+template <class Body>
+void at_step(int n, double t, Body&& body) {
+  try {
+    body();
+  } catch (const NumericsError& error) {
+    throw error.at(n, t);
+  }
+}
+
+/// Advances `past`, which has step size tau/K, from state n-1 to state n of the coarse grid; leaves that in
+/// `next`.
+template <class Flow>
+void take_substeps(Flow& flow, History<typename Flow::State>& past, int q, double tau, int K, int n,
+                   typename Flow::State& next) {
+  for (int k = 1; k <= K; ++k) {
+    const int m = (n - 1) * K + k;
+    next.t = static_cast<double>(m) / K * tau;
+    try {
+      flow.step(past, std::min(m, q), tau / K, next);
+      check_finite(next);
+    } catch (const NumericsError& error) {
+      throw NumericsError(format("starting substep %d of %d: %s", k, K, error.what()));
+    }
+    if (k < K) {
+      past.push(next);
+    } else {
+      typename Flow::State kept = next;
+      past.push(kept);
+    }
+  }
+}
+
+/// Computes the starting value of step n < q. `fine` is the history with step size tau/K (Start::substeps).
+template <class Flow>
+void find_starting_value(Flow& flow, const TimeGrid& grid,
+                         const std::function<typename Flow::State(double t)>& exact_state, int n,
+                         const History<typename Flow::State>& past, History<typename Flow::State>& fine,
+                         typename Flow::State& next) {
+  const double t = n * grid.tau;
+  switch (grid.start.kind) {
+  case Start::exact:
+    next = exact_state(t);
+    break;
+  case Start::cascade:
+    next.t = t;
+    flow.step(past, n, grid.tau, next);
+    break;
+  case Start::substeps:
+    take_substeps(flow, fine, grid.order, grid.tau, grid.start.substeps_per_step, n, next);
+    break;
+  }
+  next.t = t;
+}
+
+/// Finds the states 0..q-1 (fewer when the run is shorter), observes them and pushes them to `past`.
+template <class Flow, class Observer>
+void take_starting_steps(Flow& flow, const TimeGrid& grid, const typename Flow::State& initial,
+                         const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe,
+                         History<typename Flow::State>& past) {
+  typename Flow::State next = initial;
+  History<typename Flow::State> fine(grid.order);
+  fine.push(next);
+  for (int n = 0; n < grid.order && n <= grid.steps; ++n)
+    at_step(n, n * grid.tau, [&] {
+      if (n > 0) find_starting_value(flow, grid, exact_state, n, past, fine, next);
+      check_finite(next);
+      observe(n, std::as_const(next));
+      past.push(next);
+    });
+}
+
+/// Runs a flow from t = 0: calls observe(n, state) for n = 0..steps, the starting steps included; t = n tau.
 /// A flow has a type State (see History) and
 ///   void step(const History<State>& past, int q, double tau, State& next)
-/// that computes next (its t is set already) from the q newest states by BDF of order q.
-/// exact_state(t) is needed for Start::exact with q > 1; without it that start is an InputError.
-/// NumericsErrors are rethrown with step and time; a non-finite value in a new state is one too.
+/// that computes next (its t is set already, its Fields have the right size and stale values) from the q
+/// newest states by BDF of order q. exact_state(t) is needed for Start::exact with q > 1; without it that
+/// start is an InputError. NumericsErrors (of the observer too) are rethrown with step and time; a non-finite
+/// value in a new state is one too.
 template <class Flow, class Observer>
 void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
-               const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe);
+               const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe) {
+  check_time_grid(grid);
+  if (grid.start.kind == Start::exact && grid.order > 1 && grid.steps > 0 && !exact_state)
+    throw InputError("start exact: there is no exact solution; expected start cascade or substeps:K");
+
+  History<typename Flow::State> past(grid.order);
+  initial.t = 0;
+  take_starting_steps(flow, grid, initial, exact_state, observe, past);
+  typename Flow::State& next = initial;
+  for (int n = grid.order; n <= grid.steps; ++n) {
+    const double t = n * grid.tau;
+    at_step(n, t, [&] {
+      next.t = t;
+      flow.step(past, grid.order, grid.tau, next);
+      check_finite(next);
+      observe(n, std::as_const(next));
+      past.push(next);
+    });
+  }
+}
 
 }  // namespace esfem

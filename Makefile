@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# `make help` says what there is. Needs GNU make 4.3.
+#
+# Every experiment is a grid of cells (independent runs), known only to its executable. So the targets that run
+# something first build, then list the cells of all experiments into results/<preset>/cells (`prepare`), and then call
+# this file again with PRESET set, where each cell, table and figure is an ordinary target.
+
+SHELL := bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DELETE_ON_ERROR:
+.SUFFIXES:
+MAKEFLAGS += --no-builtin-rules --no-print-directory
+
+cores := $(shell nproc 2>/dev/null || echo 1)
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(cores)
+endif
+# Known only inside recipes. The build and the tests run on this machine, whatever LAUNCH and -j say about the cells.
+asked_jobs = $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS)))
+local_jobs = $(shell n=$(asked_jobs); echo $$(( $${n:-$(cores)} < $(cores) ? $${n:-$(cores)} : $(cores) )))
+
+# What is put in front of every cell, such as LAUNCH="srun -n1".
+LAUNCH ?=
+BIN := build/bin
+stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*.cpp 2>/dev/null))))
+sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
+
+ifndef PRESET
+# ---------------------------------------------------------------------------------------------------------------------
+# What a user types.
+
+.NOTPARALLEL:
+.PHONY: help figures check bench deps configure build build-stems test format format-check samples clean distclean \
+        tables-paper tables-check verdicts plots-check $(stems)
+
+help:
+	@echo "make figures       install what is missing, build, run every experiment as published, draw all figures"
+	@echo "                   -> results/paper/STEM.{json,csv,tex}, figures/<paper>/fig*.{pdf,png}"
+	@echo "make check         install, build, all unit tests, every experiment at preset check, a verdict per claim"
+	@echo "make STEM          one experiment as published, with its figures; STEM is one of"
+	@echo "                   $(or $(stems),(none yet))"
+	@echo "make bench         ms per step and phase at growing sizes"
+	@echo "make build | test | format | format-check | deps     parts of the above"
+	@echo "make clean         remove build/ and results/check/; published results and figures are kept, and used again"
+	@echo "make distclean     remove results/ and figures/ as well"
+	@echo
+	@echo "-jN                N jobs at once instead of one per core ($(cores) here)"
+	@echo 'LAUNCH="srun -n1"  what is put in front of each run: make figures -j100 LAUNCH="srun -n1"'
+	@echo "Stop it at any moment and type the same again: finished runs are kept."
+
+figures: build-stems
+	+@$(call run,paper,$(stems),all)
+
+$(stems): build-stems
+	+@$(call run,paper,$@,all)
+
+# Every part of the check runs, and the end says which of them failed.
+check_parts := format-check test samples tables-check verdicts plots-check
+check: build
+	+@failed=""
+	for part in $(check_parts); do
+	  echo "== $$part"; start=$$SECONDS
+	  $(MAKE) $$part || failed="$$failed $$part"
+	  echo "== $$part took $$((SECONDS - start)) s"
+	done
+	if [ -n "$$failed" ]; then echo "== check FAILED:$$failed"; exit 1; fi
+	echo "== check passed: $(check_parts)"
+
+# Missing packages are installed; where there is no apt-get, CMake names the libraries that it does not find.
+packages := $(shell sed 's/\#.*//' packages.txt)
+deps:
+	@if command -v dpkg-query >/dev/null; then
+	  installed=" $$(dpkg-query -W -f='$${Package}:$${db:Status-Status} ' $(packages) 2>/dev/null || true) "
+	  missing=""; for p in $(packages); do [[ $$installed == *" $$p:installed "* ]] || missing="$$missing $$p"; done
+	else
+	  missing=""; for p in g++ cmake git clang-format python3; do command -v $$p >/dev/null || missing="$$missing $$p"; done
+	fi
+	[ -n "$$missing" ] || exit 0
+	sudo=""; [ "$$(id -u)" = 0 ] || sudo=sudo
+	if ! command -v apt-get >/dev/null; then echo "missing:$$missing; install these (Debian's names) and try again" >&2; exit 1; fi
+	if [ -n "$$sudo" ] && ! command -v sudo >/dev/null; then
+	  echo "missing:$$missing; neither root nor sudo: run apt-get install$$missing as root" >&2; exit 1
+	fi
+	echo "== installing$$missing"; start=$$SECONDS
+	$$sudo apt-get -qq update
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends $$missing
+	echo "== installed in $$((SECONDS - start)) s"
+
+# Once; later the build itself sees what has changed.
+configure: deps
+	@if [ ! -f build/Makefile ] && [ ! -f build/build.ninja ]; then
+	  mkdir -p build
+	  if ! cmake --preset release >build/configure.log 2>&1; then
+	    cat build/configure.log
+	    echo "CMake failed: see above. Debian packages that are needed: $(packages)" >&2; exit 1
+	  fi
+	fi
+	echo "== $$(c++ --version | head -n1), $$(cmake --version | head -n1)"
+
+# Not a part of make's own jobs: the compilers stay on this machine.
+build_targets = start=$$SECONDS; env -u MAKEFLAGS -u MFLAGS cmake --build build -j$(local_jobs) $(1); \
+  echo "== build took $$((SECONDS - start)) s"
+build: configure
+	@$(call build_targets)
+build-stems: configure
+	@$(call build_targets,--target provenance $(stems))
+
+test:
+	@ctest --test-dir build --output-on-failure -j$(local_jobs)
+
+format:
+	@clang-format -i $(sources)
+format-check:
+	@clang-format --dry-run -Werror $(sources) && echo "$(words $(sources)) files are formatted"
+
+# The sample command lines in the heads of the experiments must be valid.
+samples:
+	@for stem in $(stems); do
+	  { grep -E "^// +$(BIN)/$$stem( |$$)" experiments/$$stem.cpp || true; } | sed 's|^// *||' | while read -r command; do
+	    $$command --list >/dev/null; echo "accepted: $$command"
+	  done
+	done
+
+tables-check:
+	+@$(call run,check,$(stems),tables)
+plots-check:
+	+@$(call run,check,$(stems),figures)
+
+verdicts:
+	@tables=$$(ls results/check/*.json 2>/dev/null || true)
+	if [ -z "$$tables" ]; then echo "no tables"; else $(BIN)/check_orders $$tables; fi
+
+bench: configure
+	@$(call build_targets,--target bench_step)
+	$(BIN)/bench_step
+
+clean:
+	rm -rf build results/check
+distclean: clean
+	rm -rf results figures
+
+# run(preset, stems, goal): lists the cells of the stems, then makes the goal of the second part of this file. The cells
+# depend on `.executable`, the checksum of their executable: a build that leaves it as it was outdates nothing.
+define run
+for stem in $(2); do
+  folder=results/$(1)/cells/$$stem; mkdir -p $$folder
+  sha256sum <$(BIN)/$$stem >$$folder/.executable.new
+  cmp -s $$folder/.executable.new $$folder/.executable || mv $$folder/.executable.new $$folder/.executable
+  rm -f $$folder/.executable.new
+  $(BIN)/$$stem --preset $(1) --list >$$folder/.list
+  while read -r cell cost; do
+    if [ ! -f $$folder/$$cell.json ] || [ $$folder/.executable -nt $$folder/$$cell.json ]; then echo $$cost; fi
+  done <$$folder/.list
+done | awk '{ n += 1; s += $$1 } END { if (n) printf "== %d runs to do, about %.0f s on one core\n", n, s }'
+$(MAKE) PRESET=$(1) STEMS="$(2)" $(3)
+endef
+.ONESHELL:
+
+else
+# ---------------------------------------------------------------------------------------------------------------------
+# One preset: its cells, tables and figures.
+
+cells := results/$(PRESET)/cells
+figures := $(if $(filter paper,$(PRESET)),figures,build/figures-check)
+plotted := $(foreach stem,$(STEMS),$(if $(wildcard plots/$(stem).py),$(stem)))
+PYTHON ?= $(shell for p in python3 /usr/bin/python3; do \
+  $$p -c 'import matplotlib' 2>/dev/null && echo $$p && break; done)
+PYTHON := $(PYTHON)
+
+# Of all experiments together, dearest first: so the last runs to finish are short ones.
+all_cells := $(shell cd $(cells) && for s in $(STEMS); do sed "s|^\([^ ]*\)|$$s/\1.json|" $$s/.list; done | sort -k2,2gr | cut -d' ' -f1)
+all_cells := $(addprefix $(cells)/,$(all_cells))
+cells_of = $(filter $(cells)/$(1)/%,$(all_cells))
+
+.PHONY: all tables figures
+all: tables figures
+tables: $(all_cells) $(STEMS:%=results/$(PRESET)/%.json)
+figures: tables $(plotted:%=$(figures)/.%.drawn)
+
+define stem_rules
+$(call cells_of,$(1)): $(cells)/$(1)/%.json: $(cells)/$(1)/.executable
+	@start=$$$$(date +%s)
+	$$(LAUNCH) $(BIN)/$(1) --preset $(PRESET) --cell $$* --output $$@
+	echo "$(1) $$*: $$$$(( $$$$(date +%s) - start )) s"
+
+results/$(PRESET)/$(1).json results/$(PRESET)/$(1).csv results/$(PRESET)/$(1).tex &: $(call cells_of,$(1))
+	@$(BIN)/$(1) --preset $(PRESET) --collect $(cells)/$(1) --output results/$(PRESET)/$(1).json
+	echo "$(1): results/$(PRESET)/$(1).json"
+
+$(figures)/.$(1).drawn: results/$(PRESET)/$(1).json $(wildcard plots/*.py)
+	@[ -n "$$(PYTHON)" ] || { echo "no python3 can import matplotlib: install python3-matplotlib" >&2; exit 1; }
+	mkdir -p $(figures)
+	$$(PYTHON) plots/$(1).py results/$(PRESET)/$(1).json $(figures)
+	touch $$@
+	echo "$(1): drawn into $(figures)"
+endef
+$(foreach stem,$(STEMS),$(eval $(call stem_rules,$(stem))))
+.ONESHELL:
+endif

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <regex>
+#include <set>
+
+#include "experiments/harness/command_line.hpp"
+#include "experiments/harness/experiment.hpp"
+#include "experiments/harness/peak_memory.hpp"
+#include "experiments/harness/progress.hpp"
+#include "experiments/harness/provenance.hpp"
+#include "experiments/harness/threads.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+
+namespace {
+
+/// What the command line asks for.
+struct Request {
+  Options options;
+  bool list = false;
+  std::string cell, collect_from, output = "-";
+  int threads = 1;
+};
+
+void add_run_options(CLI::App& app, Request& request) {
+  const std::string group = "Run";
+  app.get_help_ptr()->group(group);
+  app.add_option("--preset", request.options.preset,
+                 "paper: as published; check: the smallest part that shows the orders")
+      ->check(CLI::IsMember({"check", "paper"}))
+      ->capture_default_str()
+      ->group(group);
+  auto* list = app.add_flag("--list", request.list,
+                            "print the cells, one a line: name and estimated seconds on one core, "
+                            "dearest first")
+                   ->group(group);
+  auto* cell = app.add_option("--cell", request.cell,
+                              "run this cell alone and write a table of one row; a run that fails "
+                              "numerically is a row with status \"failed: why\", and exit code 0")
+                   ->type_name("NAME")
+                   ->excludes(list)
+                   ->group(group);
+  app.add_option("--collect", request.collect_from,
+                 "run nothing: make the table from the files DIR/NAME.json of all cells")
+      ->type_name("DIR")
+      ->excludes(list)
+      ->excludes(cell)
+      ->group(group);
+  app.add_option("--output", request.output,
+                 "where the table goes; a table of all cells in FILE.json is written to "
+                 "FILE.csv and FILE.tex, too; - is standard output")
+      ->type_name("FILE")
+      ->capture_default_str()
+      ->excludes(list)
+      ->group(group);
+  app.add_option("--threads", request.threads, "threads that the libraries may use")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void add_method_options(CLI::App& app, Options& options) {
+  const std::string group = "Method (not given: as in the preset)";
+  app.add_option("--degree", options.degree, "polynomial degree of the finite elements")
+      ->check(CLI::Range(1, 4))
+      ->group(group);
+  app.add_option("--bdf", options.bdf, "order of the backward difference formula")
+      ->check(CLI::Range(1, 5))
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--levels", [&](const std::string& text) { options.levels = parse_list(text, "--levels"); },
+         "mesh levels, such as 0,1,2 or 0-4")
+      ->type_name("LIST")
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--steps", [&](const std::string& text) { options.steps = parse_list(text, "--steps"); },
+         "exponents k of the step sizes tau_0 2^-k, such as 0,1 or 0-7")
+      ->type_name("LIST")
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--start", [&](const std::string& text) { options.start = parse_start(text); },
+         "starting values: exact | cascade (lower orders, same step size) | substeps:K (step size tau/K)")
+      ->type_name("START")
+      ->group(group);
+  app.add_option("--mesh", options.meshes,
+                 "mesh file (Gmsh, OFF, OBJ, PLY, STL) instead of generated meshes; repeatable")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE")
+      ->allow_extra_args(false)
+      ->group(group);
+}
+
+std::vector<Cell> checked_cells(const Experiment& experiment, const Options& options) {
+  static const std::regex file_name("[A-Za-z0-9_.+-]+");
+  std::vector<Cell> cells = experiment.cells(options);
+  if (cells.empty())
+    throw InputError("no cell is left of the grid; expected --levels and --steps that select some");
+  std::set<std::string> seen;
+  for (const Cell& cell : cells)
+    if (!std::regex_match(cell.name, file_name) || !seen.insert(cell.name).second)
+      throw std::logic_error("cell name '" + cell.name +
+                             "' is not unique or not of letters, digits and _.+-");
+  return cells;
+}
+
+std::vector<Cell> dearest_first(std::vector<Cell> cells) {
+  std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.cost > b.cost; });
+  return cells;
+}
+
+const Cell& find_cell(const std::vector<Cell>& cells, const Request& request) {
+  for (const Cell& cell : cells)
+    if (cell.name == request.cell) return cell;
+  throw InputError("--cell: found '" + request.cell + "', expected one of the " +
+                   std::to_string(cells.size()) + " cells of preset " + request.options.preset +
+                   " that --list prints, such as " + cells.front().name);
+}
+
+Row run_cell(const Cell& cell) {
+  const Progress clock(1, cell.cost);
+  reset_peak_memory();
+  Row row = cell.planned;
+  try {
+    row = cell.run();
+  } catch (const NumericsError& error) {
+    row.status = std::string("failed: ") + error.what();
+  }
+  row.cell = cell.name;
+  row.seconds = clock.elapsed_seconds();
+  row.peak_memory_mb = peak_memory_mb();
+  if (row.status != "ok")
+    std::cerr << program_invocation_short_name << ": cell " << cell.name << ": " << row.status << std::endl;
+  return row;
+}
+
+std::vector<Row> run_all(const std::vector<Cell>& cells) {
+  double total_cost = 0;
+  for (const Cell& cell : cells) total_cost += cell.cost;
+  Progress progress(cells.size(), total_cost);
+  std::vector<Row> rows;
+  for (const Cell& cell : cells) {
+    progress.cell_starts(cell.name);
+    rows.push_back(run_cell(cell));
+    progress.cell_ends(cell.cost);
+  }
+  return rows;
+}
+
+void require_all_files(const std::vector<Cell>& cells, const std::string& folder) {
+  std::vector<std::string> missing;
+  for (const Cell& cell : cells)
+    if (!std::ifstream(folder + "/" + cell.name + ".json")) missing.push_back(cell.name);
+  if (!missing.empty())
+    throw InputError(folder + "/" + missing.front() + ".json is missing: cell " + missing.front() +
+                     " has not been run (nor have " + std::to_string(missing.size() - 1) + " others of " +
+                     std::to_string(cells.size()) + "); expected a file for every cell");
+}
+
+/// Reads the rows of all cells into `table`, which says what experiment and parameters they must have.
+void collect(const std::vector<Cell>& cells, const std::string& folder, Table& table) {
+  require_all_files(cells, folder);
+  std::vector<nlohmann::json> origins;
+  for (const Cell& cell : cells) {
+    const std::string file = folder + "/" + cell.name + ".json";
+    const Table found = table_from_json(read_json(file), file);
+    if (found.experiment != table.experiment || found.rows.size() != 1 || found.rows[0].cell != cell.name)
+      throw InputError(file + ": expected a table with one row, of cell " + cell.name + " of " +
+                       table.experiment);
+    if (found.parameters != table.parameters)
+      throw InputError(file + ": found parameters " + found.parameters.dump() + ", expected " +
+                       table.parameters.dump());
+    table.rows.push_back(found.rows[0]);
+    origins.push_back(found.provenance);
+  }
+  table.provenance = collected_provenance(origins, table.provenance);
+}
+
+void write_json(const Table& table, const std::string& output) {
+  write_file(output, to_json(table).dump(1) + "\n");
+}
+
+/// The JSON comes last: where it is, the others are.
+void write_table(const Table& table, const std::string& output) {
+  const std::string extension = ".json";
+  if (output.size() > extension.size() && output.substr(output.size() - extension.size()) == extension) {
+    const std::string base = output.substr(0, output.size() - extension.size());
+    write_file(base + ".csv", to_csv(table));
+    write_file(base + ".tex", to_latex(table));
+  }
+  write_json(table, output);
+}
+
+void answer(const Experiment& experiment, const Request& request, Table table) {
+  const std::vector<Cell> cells = checked_cells(experiment, request.options);
+  if (request.list) {
+    for (const Cell& cell : dearest_first(cells)) std::printf("%s %.2f\n", cell.name.c_str(), cell.cost);
+    return;
+  }
+  if (experiment.parameters) table.parameters = experiment.parameters(request.options);
+  if (!request.cell.empty()) {
+    table.rows = {run_cell(find_cell(cells, request))};
+    return write_json(table, request.output);
+  }
+  if (request.collect_from.empty())
+    table.rows = run_all(cells);
+  else
+    collect(cells, request.collect_from, table);
+  table.fits = fit_table(table, experiment.fit_range);
+  write_table(table, request.output);
+}
+
+}  // namespace
+
+int run_experiment(const Experiment& experiment, int argc, char** argv) {
+  limit_threads(argc, argv);
+  return guarded_main([&] {
+    Request request;
+    CLI::App app(experiment.help, experiment.stem);
+    add_run_options(app, request);
+    add_method_options(app, request.options);
+    experiment.add_options(app);
+    if (!parse_command_line(app, argc, argv)) return exit_done;
+
+    Table table;
+    table.experiment = experiment.stem;
+    table.paper = experiment.paper;
+    table.provenance = provenance(argc, argv);
+    answer(experiment, request, table);
+    return exit_done;
+  });
+}
+
+}  // namespace esfem

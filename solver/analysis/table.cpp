@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/analysis/table.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <limits>
+#include <set>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+using Json = nlohmann::json;
+
+const char* const schema = "esfem-table/1";
+const std::set<std::string> table_keys = {"schema",     "experiment", "paper", "parameters",
+                                          "provenance", "rows",       "fits"};
+const std::set<std::string> row_keys = {
+    "cell", "level", "h", "nodes", "tau", "steps", "status", "seconds", "peak_memory_mb", "errors", "series"};
+const std::set<std::string> fit_keys = {"quantity", "norm", "variable", "order", "ci95", "rows_used"};
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json finite_number(double value, const std::string& where) {
+  if (!std::isfinite(value)) throw InputError(where + " is not finite and cannot be written");
+  return value;
+}
+
+/// "x.nodal_L2" for the first error that is not finite, "" when all are.
+std::string non_finite_error(const Errors& errors) {
+  for (const auto& [quantity, norms] : errors)
+    for (const auto& [norm, value] : norms)
+      if (!std::isfinite(value)) return quantity + "." + norm;
+  return "";
+}
+
+Json to_json(const Row& row) {
+  const std::string where = "row '" + row.cell + "': ";
+  Json json = row.more.is_null() ? Json::object() : row.more;
+  if (!json.is_object()) throw InputError(where + "its further keys are no JSON object");
+  for (const std::string& key : row_keys)
+    if (json.contains(key))
+      throw InputError(where + "further key '" + key + "' is a key of every row already");
+  std::string status = row.status;
+  const std::string bad = non_finite_error(row.errors);
+  if (status == "ok" && !bad.empty()) status = "failed: error " + bad + " is not finite";
+
+  json["cell"] = row.cell;
+  json["level"] = row.level;
+  json["h"] = finite_number(row.h, where + "h");
+  json["nodes"] = row.nodes;
+  json["tau"] = finite_number(row.tau, where + "tau");
+  json["steps"] = row.steps;
+  json["status"] = status;
+  json["seconds"] = finite_number(row.seconds, where + "seconds");
+  json["peak_memory_mb"] = finite_number(row.peak_memory_mb, where + "peak_memory_mb");
+  json["errors"] = Json::object();
+  for (const auto& [quantity, norms] : row.errors)
+    for (const auto& [norm, value] : norms) json["errors"][quantity][norm] = number_or_null(value);
+  json["series"] = Json::object();
+  for (const auto& [name, values] : row.series) {
+    Json& list = json["series"][name] = Json::array();
+    for (double value : values) list.push_back(number_or_null(value));
+  }
+  return json;
+}
+
+Json to_json(const Fit& fit) {
+  const std::string where = "fit of " + fit.quantity + ", " + fit.norm + ": ";
+  return {{"quantity", fit.quantity},
+          {"norm", fit.norm},
+          {"variable", fit.variable},
+          {"order", finite_number(fit.order, where + "order")},
+          {"ci95", {finite_number(fit.ci95[0], where + "ci95"), finite_number(fit.ci95[1], where + "ci95")}},
+          {"rows_used", fit.rows_used}};
+}
+
+/// A JSON object that is read key by key; `where` heads its error messages.
+struct Reader {
+  const Json& json;
+  std::string where;
+
+  Reader(const Json& object, std::string place) : json(object), where(std::move(place)) {
+    if (!json.is_object()) throw InputError(where + ": expected a JSON object, found " + json.type_name());
+  }
+
+  const Json& at(const char* key) const {
+    if (!json.contains(key)) throw InputError(where + ": key '" + key + "' is missing");
+    return json[key];
+  }
+
+  [[noreturn]] void wrong_type(const std::string& key, const char* expected, const Json& found) const {
+    throw InputError(where + ": key '" + key + "': expected " + expected + ", found " + found.type_name());
+  }
+
+  std::string text(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_string()) wrong_type(key, "a string", value);
+    return value;
+  }
+
+  double number(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_number()) wrong_type(key, "a number", value);
+    return value;
+  }
+
+  int integer(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_number_integer()) wrong_type(key, "an integer", value);
+    return value;
+  }
+
+  const Json& object(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_object()) wrong_type(key, "an object", value);
+    return value;
+  }
+
+  const Json& array(const char* key) const {
+    const Json& value = at(key);
+    if (!value.is_array()) wrong_type(key, "an array", value);
+    return value;
+  }
+
+  /// A number, or NaN for null.
+  double number_or_nan(const std::string& key, const Json& value) const {
+    if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
+    if (!value.is_number()) wrong_type(key, "a number or null", value);
+    return value;
+  }
+
+  void accept_only(const std::set<std::string>& keys) const {
+    for (const auto& item : json.items())
+      if (keys.count(item.key()) == 0) throw InputError(where + ": unknown key '" + item.key() + "'");
+  }
+};
+
+Errors errors_from_json(const Reader& row) {
+  Errors errors;
+  for (const auto& quantity : row.object("errors").items()) {
+    const std::string key = "errors." + quantity.key();
+    if (!quantity.value().is_object()) row.wrong_type(key, "an object", quantity.value());
+    for (const auto& norm : quantity.value().items())
+      errors[quantity.key()][norm.key()] = row.number_or_nan(key + "." + norm.key(), norm.value());
+  }
+  return errors;
+}
+
+std::map<std::string, std::vector<double>> series_from_json(const Reader& row) {
+  std::map<std::string, std::vector<double>> series;
+  for (const auto& item : row.object("series").items()) {
+    const std::string key = "series." + item.key();
+    if (!item.value().is_array()) row.wrong_type(key, "an array", item.value());
+    std::vector<double>& values = series[item.key()];
+    for (const Json& value : item.value()) values.push_back(row.number_or_nan(key, value));
+  }
+  return series;
+}
+
+Row row_from_json(const Json& json, const std::string& where) {
+  const Reader reader(json, where);
+  Row row;
+  row.cell = reader.text("cell");
+  row.level = reader.integer("level");
+  row.h = reader.number("h");
+  row.nodes = reader.integer("nodes");
+  row.tau = reader.number("tau");
+  row.steps = reader.integer("steps");
+  row.status = reader.text("status");
+  row.seconds = reader.number("seconds");
+  row.peak_memory_mb = reader.number("peak_memory_mb");
+  row.errors = errors_from_json(reader);
+  row.series = series_from_json(reader);
+  for (const auto& item : json.items())
+    if (row_keys.count(item.key()) == 0) row.more[item.key()] = item.value();
+
+  if (row.status != "ok" && row.status.compare(0, 8, "failed: ") != 0)
+    throw InputError(where + ": status '" + row.status + "': expected ok or failed: why");
+  if (row.status == "ok" && !non_finite_error(row.errors).empty())
+    throw InputError(where + ": status is ok, but error " + non_finite_error(row.errors) + " is null");
+  return row;
+}
+
+Fit fit_from_json(const Json& json, const std::string& where) {
+  const Reader reader(json, where);
+  reader.accept_only(fit_keys);
+  Fit fit;
+  fit.quantity = reader.text("quantity");
+  fit.norm = reader.text("norm");
+  fit.variable = reader.text("variable");
+  fit.order = reader.number("order");
+  const Json& interval = reader.array("ci95");
+  if (interval.size() != 2 || !interval[0].is_number() || !interval[1].is_number())
+    throw InputError(where + ": key 'ci95': expected two numbers, found " + interval.dump());
+  fit.ci95[0] = interval[0];
+  fit.ci95[1] = interval[1];
+  fit.rows_used = reader.integer("rows_used");
+  return fit;
+}
+
+std::string reason() {
+  return std::strerror(errno);
+}
+
+}  // namespace
+
+Json to_json(const Table& table) {
+  Json json = {{"schema", schema},
+               {"experiment", table.experiment},
+               {"paper", table.paper},
+               {"parameters", table.parameters},
+               {"provenance", table.provenance},
+               {"rows", Json::array()},
+               {"fits", Json::array()}};
+  for (const Row& row : table.rows) json["rows"].push_back(to_json(row));
+  for (const Fit& fit : table.fits) json["fits"].push_back(to_json(fit));
+  return json;
+}
+
+Table table_from_json(const Json& json, const std::string& source) {
+  const Reader reader(json, source);
+  if (reader.text("schema") != schema)
+    throw InputError(source + ": schema '" + reader.text("schema") + "': expected '" + schema + "'");
+  reader.accept_only(table_keys);
+  Table table;
+  table.experiment = reader.text("experiment");
+  table.paper = reader.text("paper");
+  table.parameters = reader.object("parameters");
+  table.provenance = reader.object("provenance");
+  std::set<std::string> cells;
+  for (const Json& item : reader.array("rows")) {
+    table.rows.push_back(row_from_json(item, format("%s, row %zu", source.c_str(), table.rows.size() + 1)));
+    if (!cells.insert(table.rows.back().cell).second)
+      throw InputError(source + ": cell '" + table.rows.back().cell + "' occurs twice");
+  }
+  for (const Json& item : reader.array("fits"))
+    table.fits.push_back(fit_from_json(item, format("%s, fit %zu", source.c_str(), table.fits.size() + 1)));
+  return table;
+}
+
+Json read_json(const std::string& file) {
+  if (std::filesystem::is_directory(file)) throw InputError(file + ": cannot be read: is a directory");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file + ": cannot be read: " + reason());
+  const std::string content((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
+  try {
+    return Json::parse(content);
+  } catch (const Json::parse_error& error) {
+    const std::size_t position = std::min<std::size_t>(error.byte, content.size());
+    const auto line = 1 + std::count(content.begin(), content.begin() + position, '\n');
+    throw InputError(format("%s, line %td: not JSON: %s", file.c_str(), line, error.what()));
+  }
+}
+
+void write_file(const std::string& file, const std::string& text) {
+  namespace fs = std::filesystem;
+  if (file == "-") {
+    std::cout << text << std::flush;
+    if (!std::cout) throw InputError("standard output: cannot be written");
+    return;
+  }
+  // A device such as /dev/null must not be replaced by a file.
+  std::error_code ignored;
+  const bool replace = !fs::exists(file, ignored) || fs::is_regular_file(file, ignored);
+  const fs::path target(file);
+  const std::string temporary =
+      replace
+          ? (target.parent_path() / format(".%s.%d.tmp", target.filename().c_str(), int(getpid()))).string()
+          : file;
+
+  errno = 0;
+  std::ofstream stream(temporary, std::ios::binary);
+  stream << text;
+  stream.close();
+  bool written = static_cast<bool>(stream);
+  if (written && replace) written = std::rename(temporary.c_str(), file.c_str()) == 0;
+  if (written) return;
+  const std::string why = reason();
+  if (replace) std::remove(temporary.c_str());
+  throw InputError(file + ": cannot be written: " + why);
+}
+
+}  // namespace esfem

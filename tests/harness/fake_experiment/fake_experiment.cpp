@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An experiment without a flow: its errors are the formula h^2 + tau^3 on a grid of four cells. Its own
+// options make a cell fail, run out of memory, wait, or say how many threads the process has.
+#include <unistd.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <filesystem>
+#include <new>
+
+#include "experiments/harness/experiment.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+struct FakeOptions {
+  std::string failing_cell, memory_cell;
+  int milliseconds = 0;
+};
+
+/// Threads of this process after a library that starts its own has worked.
+int thread_count() {
+  namespace fs = std::filesystem;
+  return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
+}
+
+Row run(const Row& planned, const std::string& name, const FakeOptions& fake) {
+  usleep(1000 * fake.milliseconds);
+  if (name == fake.failing_cell) throw NumericsError("step 3, t = 0.3: element 7 is degenerate");
+  if (name == fake.memory_cell) throw std::bad_alloc();
+  Row row = planned;
+  row.nodes = std::lround(1 / (row.h * row.h));
+  row.errors["u"]["nodal_L2"] = row.h * row.h + std::pow(row.tau, 3);
+  row.more["thread_count"] = thread_count();
+  for (const char* variable : {"OMP_NUM_THREADS", "OMP_THREAD_LIMIT", "OPENBLAS_NUM_THREADS"})
+    row.more[variable] = std::getenv(variable) ? std::getenv(variable) : "unset";
+  return row;
+}
+
+std::vector<Cell> cells(const Options& options, const FakeOptions& fake) {
+  std::vector<Cell> cells;
+  for (const int level : options.levels.value_or(std::vector<int>{0, 1}))
+    for (const int k : options.steps.value_or(std::vector<int>{0, 1})) {
+      Row planned;
+      planned.level = level;
+      planned.h = std::pow(2.0, -level);
+      planned.tau = 0.1 * std::pow(2.0, -k);
+      planned.steps = 1 << k;
+      const std::string name = format("h%d_tau%d", level, k);
+      cells.push_back(
+          {name, std::pow(4.0, level) * planned.steps, [=] { return run(planned, name, fake); }, planned});
+    }
+  return cells;
+}
+
+}  // namespace
+}  // namespace esfem
+
+int main(int argc, char** argv) {
+  using namespace esfem;
+  FakeOptions fake;
+  Experiment experiment;
+  experiment.stem = "fake_experiment";
+  experiment.paper = "none";
+  experiment.help = "Errors h^2 + tau^3 by formula.\nSample run: fake_experiment --list";
+  experiment.add_options = [&](CLI::App& app) {
+    app.add_option("--failing-cell", fake.failing_cell)->group("Fake");
+    app.add_option("--memory-cell", fake.memory_cell)->group("Fake");
+    app.add_option("--milliseconds", fake.milliseconds)->group("Fake");
+  };
+  experiment.cells = [&](const Options& options) { return cells(options, fake); };
+  experiment.parameters = [](const Options& options) {
+    return nlohmann::json{{"degree", options.degree.value_or(2)}};
+  };
+  return run_experiment(experiment, argc, argv);
+}

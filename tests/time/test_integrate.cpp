@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "solver/time/integrate.hpp"
+#include "tests/time/linear_ode.hpp"
+
+namespace esfem {
+namespace {
+
+double max_error(int q, Start start, int steps, int orders_dropped = 0) {
+  LinearOde ode;
+  ode.orders_dropped = orders_dropped;
+  double error = 0;
+  integrate(ode, {q, 1.0 / steps, steps, start}, LinearOde::exact(0), LinearOde::exact,
+            [&](int, const LinearOde::State& state) {
+              const LinearOde::State exact = LinearOde::exact(state.t);
+              error = std::max({error, (state.x - exact.x).norm(), (state.u - exact.u).norm()});
+            });
+  return error;
+}
+
+/// Halves the step size until round-off shows; the mean of the last two slopes.
+double observed_order(int q, Start start, int orders_dropped = 0) {
+  std::vector<double> errors;
+  for (int steps = 16; steps <= 1024; steps *= 2) {
+    const double error = max_error(q, start, steps, orders_dropped);
+    if (error < 1e-11) break;
+    errors.push_back(error);
+  }
+  if (errors.size() < 3) return 0;
+  return std::log2(errors[errors.size() - 3] / errors.back()) / 2;
+}
+
+bool shows_order(int q, double observed) {
+  return observed + 0.1 > q;
+}
+
+const Start exact{Start::exact, 1}, cascade{Start::cascade, 1}, substeps16{Start::substeps, 16};
+
+TEST(Integrate, ShowsItsOrderFromExactStartingValues) {
+  for (int q = 1; q <= max_bdf_order; ++q) {
+    const double order = observed_order(q, exact);
+    EXPECT_TRUE(shows_order(q, order)) << "q = " << q << ": " << order;
+  }
+}
+
+TEST(Integrate, ExtrapolationOfALowerOrderShows) {
+  for (int q = 2; q <= max_bdf_order; ++q) {
+    const double order = observed_order(q, exact, 1);
+    EXPECT_FALSE(shows_order(q, order)) << "q = " << q << ": " << order;
+  }
+}
+
+TEST(Integrate, CascadeGivesOrderTwoAtMost) {
+  EXPECT_TRUE(shows_order(2, observed_order(2, cascade)));
+  for (int q = 3; q <= max_bdf_order; ++q) {
+    const double order = observed_order(q, cascade);
+    EXPECT_FALSE(shows_order(q, order)) << "q = " << q << ": " << order;
+    EXPECT_NEAR(order, 2, 0.2) << "q = " << q;
+  }
+}
+
+TEST(Integrate, SubstepsRestoreTheOrder) {
+  // The first substep leaves an error (tau/16)^2: order 3 shows until tau^3 is of that size.
+  const auto order = [](Start start) {
+    return std::log2(max_error(3, start, 16) / max_error(3, start, 64)) / 2;
+  };
+  EXPECT_TRUE(shows_order(3, order(substeps16))) << order(substeps16);
+  EXPECT_FALSE(shows_order(3, order(cascade))) << order(cascade);
+  for (int q = 3; q <= max_bdf_order; ++q)
+    EXPECT_LT(max_error(q, substeps16, 32), max_error(q, cascade, 32) / 10) << "q = " << q;
+}
+
+TEST(Integrate, ObservesEveryStateAtItsTime) {
+  for (const Start& start : {exact, cascade, substeps16})
+    for (int steps : {0, 1, 2, 3, 10}) {
+      LinearOde ode;
+      int expected = 0;
+      LinearOde::State initial = LinearOde::exact(0);
+      initial.t = 7;
+      integrate(ode, {3, 0.1, steps, start}, initial, LinearOde::exact,
+                [&](int n, const LinearOde::State& state) {
+                  EXPECT_EQ(n, expected++);
+                  EXPECT_EQ(state.t, n * 0.1);
+                  EXPECT_LT((state.u - LinearOde::exact(state.t).u).norm(), 0.1);
+                });
+      EXPECT_EQ(expected, steps + 1);
+    }
+}
+
+TEST(Integrate, OneSubstepIsTheCascade) {
+  EXPECT_EQ(max_error(4, {Start::substeps, 1}, 20), max_error(4, cascade, 20));
+}
+
+/// What a run that is expected to fail says; empty when it does not fail.
+template <class Flow, class Error = NumericsError>
+std::string failure(Flow flow, const TimeGrid& grid,
+                    const std::function<LinearOde::State(double)>& exact_state = LinearOde::exact) {
+  try {
+    integrate(flow, grid, LinearOde::exact(0), exact_state, [](int, const auto&) {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+struct BecomesNonFinite : LinearOde {
+  using State = LinearOde::State;
+  double from = 0;
+  void step(const History<State>& past, int q, double tau, State& next) {
+    LinearOde::step(past, q, tau, next);
+    if (next.t >= from) next.v(0, 1) = std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+TEST(Integrate, NonFiniteValuesAreErrorsWithStepAndTime) {
+  using testing::AllOf, testing::HasSubstr;
+  BecomesNonFinite flow;
+  flow.from = 0.55;
+  EXPECT_THAT(failure(flow, {2, 0.1, 10, exact}),
+              AllOf(HasSubstr("step 6"), HasSubstr("t = 0.6"), HasSubstr("non-finite value of v at node 0")));
+  flow.from = 0.15;
+  EXPECT_THAT(failure(flow, {3, 0.1, 10, {Start::substeps, 4}}),
+              AllOf(HasSubstr("step 2"), HasSubstr("substep 2 of 4"), HasSubstr("non-finite")));
+  flow.from = 0.15;
+  EXPECT_THAT(failure(flow, {3, 0.1, 10, cascade}), HasSubstr("step 2"));
+  flow.from = 2;
+  EXPECT_EQ(failure(flow, {3, 0.1, 10, cascade}), "");
+}
+
+TEST(Integrate, ExactStartNeedsAnExactSolution) {
+  const auto says = [](int q, Start start) {
+    return failure<LinearOde, InputError>({}, {q, 0.1, 5, start}, nullptr);
+  };
+  EXPECT_THAT(says(2, exact), testing::HasSubstr("cascade or substeps:K"));
+  EXPECT_EQ(says(1, exact), "");
+  EXPECT_EQ(says(2, cascade), "");
+}
+
+TEST(Integrate, BadGridsAreErrors) {
+  for (const TimeGrid& grid : {TimeGrid{6, 0.1, 5, {}},
+                               {0, 0.1, 5, {}},
+                               {2, 0, 5, {}},
+                               {2, -1, 5, {}},
+                               {2, std::nan(""), 5, {}},
+                               {2, 0.1, -1, {}},
+                               {2, 0.1, 5, {Start::substeps, 0}}})
+    EXPECT_THROW(check_time_grid(grid), InputError);
+  EXPECT_NO_THROW(check_time_grid({5, 0.1, 0, {}}));
+}
+
+TEST(Start, ParsesWhatItPrints) {
+  for (const char* text : {"exact", "cascade", "substeps:1", "substeps:16"})
+    EXPECT_EQ(to_string(parse_start(text)), text);
+  for (const char* text : {"", "Exact", "substeps", "substeps:", "substeps:0", "substeps:-2", "substeps:4x",
+                           "substeps: 4", "substeps:99999999999", "exact "}) {
+    try {
+      parse_start(text);
+      ADD_FAILURE() << "'" << text << "' was accepted";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("expected exact, cascade or substeps:K"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace esfem
