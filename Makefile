@@ -2,12 +2,13 @@
 # `make help` says what there is. Needs GNU make 4.3.
 #
 # Every experiment is a grid of cells (independent runs), known only to its executable. So the targets that run
-# something first build, then list the cells of all experiments into results/<preset>/cells (`prepare`), and then call
-# this file again with PRESET set, where each cell, table and figure is an ordinary target.
+# something first build, then list the cells (`run`), and then call experiments/harness/cells.mk, where each cell, table
+# and figure is an ordinary target.
 
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
-.DELETE_ON_ERROR:
+.ONESHELL:
+.NOTPARALLEL:
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules --no-print-directory
 
@@ -19,17 +20,10 @@ endif
 asked_jobs = $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS)))
 local_jobs = $(shell n=$(asked_jobs); echo $$(( $${n:-$(cores)} < $(cores) ? $${n:-$(cores)} : $(cores) )))
 
-# What is put in front of every cell, such as LAUNCH="srun -n1".
-LAUNCH ?=
 BIN := build/bin
 stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*.cpp 2>/dev/null))))
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
-ifndef PRESET
-# ---------------------------------------------------------------------------------------------------------------------
-# What a user types.
-
-.NOTPARALLEL:
 .PHONY: help figures check bench deps configure build build-stems test format format-check samples clean distclean \
         tables-paper tables-check verdicts plots-check $(stems)
 
@@ -86,9 +80,10 @@ deps:
 	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends $$missing
 	echo "== installed in $$((SECONDS - start)) s"
 
-# Once; later the build itself sees what has changed.
+# The build itself sees what has changed, but for targets that it does not know yet.
 configure: deps
-	@if [ ! -f build/Makefile ] && [ ! -f build/build.ninja ]; then
+	@made=build/Makefile; [ -f $$made ] || made=build/build.ninja
+	if [ CMakeLists.txt -nt $$made ] || [ tests/CMakeLists.txt -nt $$made ] || [ bench/CMakeLists.txt -nt $$made ]; then
 	  mkdir -p build
 	  if ! cmake --preset release >build/configure.log 2>&1; then
 	    cat build/configure.log
@@ -98,12 +93,12 @@ configure: deps
 	echo "== $$(c++ --version | head -n1), $$(cmake --version | head -n1)"
 
 # Not a part of make's own jobs: the compilers stay on this machine.
-build_targets = start=$$SECONDS; env -u MAKEFLAGS -u MFLAGS cmake --build build -j$(local_jobs) $(1); \
+build_targets = start=$$SECONDS; env -u MAKEFLAGS -u MFLAGS -u MAKELEVEL cmake --build build -j$(local_jobs) $(1); \
   echo "== build took $$((SECONDS - start)) s"
 build: configure
 	@$(call build_targets)
 build-stems: configure
-	@$(call build_targets,--target provenance $(stems))
+	@$(call build_targets,--target experiments)
 
 test:
 	@ctest --test-dir build --output-on-failure -j$(local_jobs)
@@ -139,7 +134,7 @@ clean:
 distclean: clean
 	rm -rf results figures
 
-# run(preset, stems, goal): lists the cells of the stems, then makes the goal of the second part of this file. The cells
+# run(preset, stems, goal): lists the cells of the stems, then makes the goal of cells.mk. The cells
 # depend on `.executable`, the checksum of their executable: a build that leaves it as it was outdates nothing.
 define run
 for stem in $(2); do
@@ -152,48 +147,5 @@ for stem in $(2); do
     if [ ! -f $$folder/$$cell.json ] || [ $$folder/.executable -nt $$folder/$$cell.json ]; then echo $$cost; fi
   done <$$folder/.list
 done | awk '{ n += 1; s += $$1 } END { if (n) printf "== %d runs to do, about %.0f s on one core\n", n, s }'
-$(MAKE) PRESET=$(1) STEMS="$(2)" $(3)
+$(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" $(3)
 endef
-.ONESHELL:
-
-else
-# ---------------------------------------------------------------------------------------------------------------------
-# One preset: its cells, tables and figures.
-
-cells := results/$(PRESET)/cells
-figures := $(if $(filter paper,$(PRESET)),figures,build/figures-check)
-plotted := $(foreach stem,$(STEMS),$(if $(wildcard plots/$(stem).py),$(stem)))
-PYTHON ?= $(shell for p in python3 /usr/bin/python3; do \
-  $$p -c 'import matplotlib' 2>/dev/null && echo $$p && break; done)
-PYTHON := $(PYTHON)
-
-# Of all experiments together, dearest first: so the last runs to finish are short ones.
-all_cells := $(shell cd $(cells) && for s in $(STEMS); do sed "s|^\([^ ]*\)|$$s/\1.json|" $$s/.list; done | sort -k2,2gr | cut -d' ' -f1)
-all_cells := $(addprefix $(cells)/,$(all_cells))
-cells_of = $(filter $(cells)/$(1)/%,$(all_cells))
-
-.PHONY: all tables figures
-all: tables figures
-tables: $(all_cells) $(STEMS:%=results/$(PRESET)/%.json)
-figures: tables $(plotted:%=$(figures)/.%.drawn)
-
-define stem_rules
-$(call cells_of,$(1)): $(cells)/$(1)/%.json: $(cells)/$(1)/.executable
-	@start=$$$$(date +%s)
-	$$(LAUNCH) $(BIN)/$(1) --preset $(PRESET) --cell $$* --output $$@
-	echo "$(1) $$*: $$$$(( $$$$(date +%s) - start )) s"
-
-results/$(PRESET)/$(1).json results/$(PRESET)/$(1).csv results/$(PRESET)/$(1).tex &: $(call cells_of,$(1))
-	@$(BIN)/$(1) --preset $(PRESET) --collect $(cells)/$(1) --output results/$(PRESET)/$(1).json
-	echo "$(1): results/$(PRESET)/$(1).json"
-
-$(figures)/.$(1).drawn: results/$(PRESET)/$(1).json $(wildcard plots/*.py)
-	@[ -n "$$(PYTHON)" ] || { echo "no python3 can import matplotlib: install python3-matplotlib" >&2; exit 1; }
-	mkdir -p $(figures)
-	$$(PYTHON) plots/$(1).py results/$(PRESET)/$(1).json $(figures)
-	touch $$@
-	echo "$(1): drawn into $(figures)"
-endef
-$(foreach stem,$(STEMS),$(eval $(call stem_rules,$(stem))))
-.ONESHELL:
-endif

@@ -12,6 +12,11 @@ struct RowRange {
   double tau_min = 0, tau_max = 1e300, h_min = 0, h_max = 1e300;
 };
 
+/// A quantity whose errors are all below this is not fitted.
+constexpr double round_off = 1e-10;
+
+bool in_range(const Row& row, const RowRange& range);
+
 /// Observed orders p, q of e = C_h h^p + C_tau tau^q (positive C), from all given rows at once.
 struct OrderFit {
   bool has_h = false, has_tau = false;  ///< the variable varies and its term is identified by the data
@@ -21,16 +26,19 @@ struct OrderFit {
   int rows_used = 0;
 };
 
-/// Fits log e = log(C_h h^p + C_tau tau^q) by Ceres with a robust loss; 95% intervals from the covariance
+/// Fits log e = log(C_h h^p + C_tau tau^q) by Ceres with Cauchy's loss; 95% intervals from the covariance
 /// (scaled by the residual variance, Student's t). When only one variable varies, the other term is a
-/// constant plateau. Throws InputError, which says how many rows there are and how many are needed, when the
-/// data cannot determine the orders (too few rows, no variation, errors that are not positive), NumericsError
-/// when Ceres finds no usable solution.
+/// constant plateau. Of the full model and the ones with a single term the one is taken that the data support
+/// (Bayesian information criterion; standard errors of the orders at most 1/2): a term that shows nowhere has
+/// no order, has_h or has_tau is false then, and so is its constant 0. Throws InputError, which says how many
+/// rows there are and how many are needed, when there are too few rows, nothing varies, or a number is not
+/// positive; NumericsError when the rows determine no order.
 OrderFit fit_orders(const std::vector<double>& h, const std::vector<double>& tau,
                     const std::vector<double>& error);
 
-/// Fits for every quantity and norm of the rows with status "ok" in the range (max over rows of one norm >
-/// 1e-10, so that round-off is not fitted); quantities whose orders the data cannot determine are left out.
+/// Fits for every quantity and norm of the rows with status "ok" in the range, but for those at round-off and
+/// those whose orders the data do not determine. Rows of different variants have no common order: then there
+/// is no fit.
 std::vector<Fit> fit_table(const Table& table, const RowRange& range);
 
 }  // namespace esfem

@@ -14,6 +14,7 @@
 #include <limits>
 #include <set>
 
+#include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
@@ -86,91 +87,37 @@ Json to_json(const Fit& fit) {
           {"rows_used", fit.rows_used}};
 }
 
-/// A JSON object that is read key by key; `where` heads its error messages.
-struct Reader {
-  const Json& json;
-  std::string where;
+/// A number, or NaN for null.
+double number_or_nan(const JsonReader& reader, const std::string& key, const Json& value) {
+  if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
+  if (!value.is_number()) reader.wrong_type(key, "a number or null", value);
+  return value;
+}
 
-  Reader(const Json& object, std::string place) : json(object), where(std::move(place)) {
-    if (!json.is_object()) throw InputError(where + ": expected a JSON object, found " + json.type_name());
-  }
-
-  const Json& at(const char* key) const {
-    if (!json.contains(key)) throw InputError(where + ": key '" + key + "' is missing");
-    return json[key];
-  }
-
-  [[noreturn]] void wrong_type(const std::string& key, const char* expected, const Json& found) const {
-    throw InputError(where + ": key '" + key + "': expected " + expected + ", found " + found.type_name());
-  }
-
-  std::string text(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_string()) wrong_type(key, "a string", value);
-    return value;
-  }
-
-  double number(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_number()) wrong_type(key, "a number", value);
-    return value;
-  }
-
-  int integer(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_number_integer()) wrong_type(key, "an integer", value);
-    return value;
-  }
-
-  const Json& object(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_object()) wrong_type(key, "an object", value);
-    return value;
-  }
-
-  const Json& array(const char* key) const {
-    const Json& value = at(key);
-    if (!value.is_array()) wrong_type(key, "an array", value);
-    return value;
-  }
-
-  /// A number, or NaN for null.
-  double number_or_nan(const std::string& key, const Json& value) const {
-    if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
-    if (!value.is_number()) wrong_type(key, "a number or null", value);
-    return value;
-  }
-
-  void accept_only(const std::set<std::string>& keys) const {
-    for (const auto& item : json.items())
-      if (keys.count(item.key()) == 0) throw InputError(where + ": unknown key '" + item.key() + "'");
-  }
-};
-
-Errors errors_from_json(const Reader& row) {
+Errors errors_from_json(const JsonReader& row) {
   Errors errors;
   for (const auto& quantity : row.object("errors").items()) {
     const std::string key = "errors." + quantity.key();
     if (!quantity.value().is_object()) row.wrong_type(key, "an object", quantity.value());
     for (const auto& norm : quantity.value().items())
-      errors[quantity.key()][norm.key()] = row.number_or_nan(key + "." + norm.key(), norm.value());
+      errors[quantity.key()][norm.key()] = number_or_nan(row, key + "." + norm.key(), norm.value());
   }
   return errors;
 }
 
-std::map<std::string, std::vector<double>> series_from_json(const Reader& row) {
+std::map<std::string, std::vector<double>> series_from_json(const JsonReader& row) {
   std::map<std::string, std::vector<double>> series;
   for (const auto& item : row.object("series").items()) {
     const std::string key = "series." + item.key();
     if (!item.value().is_array()) row.wrong_type(key, "an array", item.value());
     std::vector<double>& values = series[item.key()];
-    for (const Json& value : item.value()) values.push_back(row.number_or_nan(key, value));
+    for (const Json& value : item.value()) values.push_back(number_or_nan(row, key, value));
   }
   return series;
 }
 
 Row row_from_json(const Json& json, const std::string& where) {
-  const Reader reader(json, where);
+  const JsonReader reader(json, where);
   Row row;
   row.cell = reader.text("cell");
   row.level = reader.integer("level");
@@ -194,7 +141,7 @@ Row row_from_json(const Json& json, const std::string& where) {
 }
 
 Fit fit_from_json(const Json& json, const std::string& where) {
-  const Reader reader(json, where);
+  const JsonReader reader(json, where);
   reader.accept_only(fit_keys);
   Fit fit;
   fit.quantity = reader.text("quantity");
@@ -216,6 +163,14 @@ std::string reason() {
 
 }  // namespace
 
+std::string variant(const Row& row) {
+  std::string text;
+  for (const auto& item : row.more.items())
+    if (item.value().is_string())
+      text += (text.empty() ? "" : ", ") + item.key() + "=" + item.value().get<std::string>();
+  return text;
+}
+
 Json to_json(const Table& table) {
   Json json = {{"schema", schema},
                {"experiment", table.experiment},
@@ -230,7 +185,7 @@ Json to_json(const Table& table) {
 }
 
 Table table_from_json(const Json& json, const std::string& source) {
-  const Reader reader(json, source);
+  const JsonReader reader(json, source);
   if (reader.text("schema") != schema)
     throw InputError(source + ": schema '" + reader.text("schema") + "': expected '" + schema + "'");
   reader.accept_only(table_keys);

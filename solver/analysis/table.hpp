@@ -28,6 +28,10 @@ struct Row {
   nlohmann::json more = nlohmann::json::object();     ///< further keys of the row (variant, ...)
 };
 
+/// The variant that a row belongs to: its further keys with string values, as "key=value, key=value"; ""
+/// without such.
+std::string variant(const Row& row);
+
 /// A fitted order with its 95% interval.
 struct Fit {
   std::string quantity, norm, variable;  ///< variable: "h" | "tau"

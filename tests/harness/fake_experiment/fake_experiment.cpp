@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An experiment without a flow: its errors are the formula h^2 + tau^3 on a grid of four cells. Its own
 // options make a cell fail, run out of memory, wait, or say how many threads the process has.
+#include <cholmod.h>
 #include <unistd.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <filesystem>
 #include <new>
@@ -19,7 +19,26 @@ struct FakeOptions {
   int milliseconds = 0;
 };
 
-/// Threads of this process after a library that starts its own has worked.
+/// A supernodal factorisation of a full matrix: CHOLMOD's OpenMP and the threads of BLAS have something to
+/// do.
+void factorise() {
+  const size_t n = 400;
+  cholmod_common common;
+  cholmod_start(&common);
+  common.supernodal = CHOLMOD_SUPERNODAL;
+  cholmod_dense* full = cholmod_ones(n, n, CHOLMOD_REAL, &common);
+  for (size_t i = 0; i < n; ++i) static_cast<double*>(full->x)[i * (n + 1)] = 2 * n;
+  cholmod_sparse* unsymmetric = cholmod_dense_to_sparse(full, 1, &common);
+  cholmod_sparse* matrix = cholmod_copy(unsymmetric, 1, 1, &common);
+  cholmod_factor* factor = cholmod_analyze(matrix, &common);
+  cholmod_factorize(matrix, factor, &common);
+  cholmod_free_factor(&factor, &common);
+  cholmod_free_sparse(&matrix, &common);
+  cholmod_free_sparse(&unsymmetric, &common);
+  cholmod_free_dense(&full, &common);
+  cholmod_finish(&common);
+}
+
 int thread_count() {
   namespace fs = std::filesystem;
   return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
@@ -32,6 +51,7 @@ Row run(const Row& planned, const std::string& name, const FakeOptions& fake) {
   Row row = planned;
   row.nodes = std::lround(1 / (row.h * row.h));
   row.errors["u"]["nodal_L2"] = row.h * row.h + std::pow(row.tau, 3);
+  factorise();
   row.more["thread_count"] = thread_count();
   for (const char* variable : {"OMP_NUM_THREADS", "OMP_THREAD_LIMIT", "OPENBLAS_NUM_THREADS"})
     row.more[variable] = std::getenv(variable) ? std::getenv(variable) : "unset";

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/analysis/claims.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/analysis/json_reader.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+using Json = nlohmann::json;
+
+/// "tau", "tau_min", "tau_max" (or those of h) of the reader as bounds.
+void read_bounds(const JsonReader& reader, const std::string& name, double& least, double& most) {
+  if (reader.has(name)) {
+    if (reader.has(name + "_min") || reader.has(name + "_max"))
+      throw InputError(reader.where() + ": '" + name + "' excludes '" + name + "_min' and '" + name +
+                       "_max'");
+    least = most = reader.number(name);
+  } else {
+    least = reader.number_or(name + "_min", least);
+    most = reader.number_or(name + "_max", most);
+  }
+  if (!(least <= most))
+    throw InputError(format("%s: no %s is in [%g, %g]", reader.where().c_str(), name.c_str(), least, most));
+}
+
+void read_rows(const Json& json, const std::string& where, Claim& claim) {
+  const JsonReader reader(json, where + ", rows");
+  reader.accept_only({"tau", "tau_min", "tau_max", "h", "h_min", "h_max", "variant"});
+  read_bounds(reader, "tau", claim.rows.tau_min, claim.rows.tau_max);
+  read_bounds(reader, "h", claim.rows.h_min, claim.rows.h_max);
+  if (reader.has("variant")) claim.variant = reader.text("variant");
+}
+
+void read_presets(const JsonReader& reader, Claim& claim) {
+  for (const Json& preset : reader.array("presets")) {
+    if (preset != "check" && preset != "paper")
+      throw InputError(reader.where() + ": preset " + preset.dump() + ": expected \"check\" or \"paper\"");
+    claim.presets.insert(preset.get<std::string>());
+  }
+  if (claim.presets.empty())
+    throw InputError(reader.where() + ": 'presets' is empty: the claim would never be checked");
+}
+
+void read_order(const JsonReader& reader, Claim& claim) {
+  claim.kind = Claim::order;
+  claim.variable = reader.text("variable");
+  if (claim.variable != "h" && claim.variable != "tau")
+    throw InputError(reader.where() + ": variable '" + claim.variable + "': expected h or tau");
+  claim.expected = reader.number("expected");
+  claim.tolerance = reader.number("tolerance");
+  if (claim.tolerance < 0) throw InputError(reader.where() + ": 'tolerance' is negative");
+  claim.at_most = reader.number_or("at_most", claim.at_most);
+}
+
+void read_size(const JsonReader& reader, Claim& claim) {
+  claim.kind = Claim::size;
+  if (!reader.has("at_most") && !reader.has("at_least"))
+    throw InputError(reader.where() + ": a claim of size needs 'at_most' or 'at_least'");
+  claim.at_most = reader.number_or("at_most", claim.at_most);
+  claim.at_least = reader.number_or("at_least", claim.at_least);
+}
+
+Claim claim_from_json(const Json& json, const std::string& place) {
+  const std::string id = JsonReader(json, place).text("id");
+  const JsonReader reader(json, place + " '" + id + "'");
+  Claim claim;
+  claim.id = id;
+  claim.statement = reader.text("statement");
+  const JsonReader source(reader.object("source"), reader.where() + ", source");
+  source.accept_only({"paper", "place"});
+  claim.paper = source.text("paper");
+  claim.place = source.text("place");
+  claim.quantity = reader.text("quantity");
+  claim.norm = reader.text("norm");
+  if (reader.has("rows")) read_rows(reader.object("rows"), reader.where(), claim);
+  if (reader.has("presets")) read_presets(reader, claim);
+
+  std::set<std::string> known = {"id",   "statement", "source",  "kind",   "quantity",
+                                 "norm", "rows",      "presets", "at_most"};
+  const std::string kind = reader.text("kind");
+  if (kind == "order") {
+    known.insert({"variable", "expected", "tolerance"});
+    read_order(reader, claim);
+  } else if (kind == "size") {
+    known.insert("at_least");
+    read_size(reader, claim);
+  } else {
+    throw InputError(reader.where() + ": kind '" + kind + "': expected order or size");
+  }
+  reader.accept_only(known);
+  return claim;
+}
+
+/// The rows and errors that a claim is about.
+struct Selection {
+  std::vector<double> h, tau, error;
+};
+
+/// Throws InputError when the rows in range do not all have the error.
+Selection select(const Claim& claim, const Table& table) {
+  Selection selection;
+  for (const Row& row : table.rows) {
+    if (!in_range(row, claim.rows) || variant(row) != claim.variant) continue;
+    if (row.status != "ok") throw InputError("cell " + row.cell + " " + row.status);
+    const auto norms = row.errors.find(claim.quantity);
+    if (norms == row.errors.end() || norms->second.count(claim.norm) == 0)
+      throw InputError("cell " + row.cell + " has no error " + claim.quantity + " " + claim.norm);
+    selection.h.push_back(row.h);
+    selection.tau.push_back(row.tau);
+    selection.error.push_back(norms->second.at(claim.norm));
+    if (!std::isfinite(selection.error.back()))
+      throw InputError("the error of cell " + row.cell + " is not finite");
+  }
+  if (selection.error.empty()) throw InputError("no row of the table is in the range of the claim");
+  return selection;
+}
+
+Verdict check_order(const Claim& claim, const Selection& rows) {
+  if (*std::max_element(rows.error.begin(), rows.error.end()) < round_off)
+    throw InputError(format("all errors are below %g, at round-off", round_off));
+  const OrderFit fit = fit_orders(rows.h, rows.tau, rows.error);
+  const bool in_tau = claim.variable == "tau";
+  if (!(in_tau ? fit.has_tau : fit.has_h))
+    throw InputError("the errors do not show how they depend on " + claim.variable);
+
+  Verdict verdict;
+  verdict.measured = true;
+  verdict.rows_used = fit.rows_used;
+  verdict.value = in_tau ? fit.order_tau : fit.order_h;
+  std::copy_n(in_tau ? fit.ci95_tau : fit.ci95_h, 2, verdict.ci95);
+  if (!(verdict.value + claim.tolerance >= claim.expected))
+    verdict.reason =
+        format("Convergence order not achieved: %.2f instead of the expected %g within a tolerance of %g",
+               verdict.value, claim.expected, claim.tolerance);
+  else if (!(verdict.value <= claim.at_most))
+    verdict.reason =
+        format("Convergence order too high: %.2f, expected at most %g", verdict.value, claim.at_most);
+  return verdict;
+}
+
+Verdict check_size(const Claim& claim, const Selection& rows) {
+  const auto [least, most] = std::minmax_element(rows.error.begin(), rows.error.end());
+  Verdict verdict;
+  verdict.measured = true;
+  verdict.rows_used = static_cast<int>(rows.error.size());
+  verdict.value = *most;
+  if (!(*most <= claim.at_most)) {
+    verdict.reason = format("Error too large: %.3e, expected at most %g", *most, claim.at_most);
+  } else if (!(*least >= claim.at_least)) {
+    verdict.value = *least;
+    verdict.reason = format("Error too small: %.3e, expected at least %g", *least, claim.at_least);
+  }
+  return verdict;
+}
+
+}  // namespace
+
+Reference reference_from_json(const Json& json, const std::string& source) {
+  const JsonReader reader(json, source);
+  reader.accept_only({"experiment", "paper", "claims"});
+  Reference reference;
+  reference.experiment = reader.text("experiment");
+  reference.paper = reader.text("paper");
+  std::set<std::string> ids;
+  for (const Json& item : reader.array("claims")) {
+    reference.claims.push_back(
+        claim_from_json(item, format("%s, claim %zu", source.c_str(), ids.size() + 1)));
+    if (!ids.insert(reference.claims.back().id).second)
+      throw InputError(source + ": claim '" + reference.claims.back().id + "' occurs twice");
+  }
+  if (reference.claims.empty()) throw InputError(source + ": there is no claim");
+  return reference;
+}
+
+Verdict check_claim(const Claim& claim, const Table& table) {
+  Verdict verdict;
+  try {
+    const Selection rows = select(claim, table);
+    verdict = claim.kind == Claim::order ? check_order(claim, rows) : check_size(claim, rows);
+    verdict.met = verdict.reason.empty();
+  } catch (const InputError& error) {
+    verdict.reason = std::string("Nothing to check: ") + error.what();
+  } catch (const NumericsError& error) {
+    verdict.reason = std::string("No order: ") + error.what();
+  }
+  return verdict;
+}
+
+bool applies(const Claim& claim, const Table& table) {
+  const auto preset = table.parameters.find("preset");
+  return claim.presets.empty() || preset == table.parameters.end() || !preset->is_string() ||
+         claim.presets.count(preset->get<std::string>()) > 0;
+}
+
+}  // namespace esfem

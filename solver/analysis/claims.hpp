@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "solver/analysis/fit_orders.hpp"
+#include "solver/analysis/table.hpp"
+
+namespace esfem {
+
+/// What a paper (or this project) says about one error of an experiment.
+///
+/// order: the order in `variable`, fitted to the rows in range, is at least expected - tolerance (one-sided:
+/// methods may
+///        do better), and at most `at_most` when that is given.
+/// size:  the error of every row in range is at most `at_most` (and at least `at_least`).
+struct Claim {
+  enum Kind { order, size } kind = order;
+  std::string id, statement;
+  std::string paper, place;    ///< source, e.g. "kll19", "§13.1, Fig. 13.1"
+  std::string quantity, norm;  ///< keys of Row::errors
+  std::string variable;        ///< order: "h" | "tau"
+  double expected = 0;         ///< order
+  double tolerance = 0;        ///< order
+  double at_least = -std::numeric_limits<double>::infinity();
+  double at_most = std::numeric_limits<double>::infinity();
+  RowRange rows;
+  std::string variant;            ///< as variant(row); "" takes rows without one
+  std::set<std::string> presets;  ///< where it is checked; empty: everywhere
+};
+
+/// Contents of reference/<stem>.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
+/// {"paper", "place"}, "kind": "order" | "size", "quantity", "norm", "rows": {"tau", "tau_min", "tau_max",
+/// "h", "h_min", "h_max", "variant"}, "presets": [..], ...}]}; order: "variable", "expected", "tolerance",
+/// and "at_most" if wanted; size: "at_most" and/or "at_least". rows.tau and rows.h select one value.
+struct Reference {
+  std::string experiment, paper;
+  std::vector<Claim> claims;
+};
+
+/// Throws InputError naming `source`, the claim and the key; unknown keys are errors, and so is a file
+/// without claims.
+Reference reference_from_json(const nlohmann::json& json, const std::string& source);
+
+struct Verdict {
+  bool met = false;
+  std::string reason;       ///< why it is not met: one sentence
+  bool measured = false;    ///< whether the following are set
+  double value = 0;         ///< the order, or the error that is furthest from being met
+  double ci95[2] = {0, 0};  ///< orders only
+  int rows_used = 0;
+};
+
+/// A claim that nothing can be measured for (no rows in range, a failed one among them, no such quantity,
+/// round-off, no order determined) is not met.
+Verdict check_claim(const Claim& claim, const Table& table);
+
+/// Whether the claim is checked at the table's preset, its parameters["preset"]; a table without one is held
+/// to all.
+bool applies(const Claim& claim, const Table& table);
+
+}  // namespace esfem

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/analysis/json_reader.hpp"
+
+#include <utility>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+using Json = nlohmann::json;
+
+JsonReader::JsonReader(const Json& object, std::string where) : json_(object), where_(std::move(where)) {
+  if (!json_.is_object()) throw InputError(where_ + ": expected a JSON object, found " + json_.type_name());
+}
+
+const Json& JsonReader::at(const std::string& key) const {
+  if (!has(key)) throw InputError(where_ + ": key '" + key + "' is missing");
+  return json_[key];
+}
+
+void JsonReader::wrong_type(const std::string& key, const char* expected, const Json& found) const {
+  throw InputError(where_ + ": key '" + key + "': expected " + expected + ", found " + found.type_name());
+}
+
+std::string JsonReader::text(const std::string& key) const {
+  const Json& value = at(key);
+  if (!value.is_string()) wrong_type(key, "a string", value);
+  return value;
+}
+
+double JsonReader::number(const std::string& key) const {
+  const Json& value = at(key);
+  if (!value.is_number()) wrong_type(key, "a number", value);
+  return value;
+}
+
+int JsonReader::integer(const std::string& key) const {
+  const Json& value = at(key);
+  if (!value.is_number_integer()) wrong_type(key, "an integer", value);
+  return value;
+}
+
+const Json& JsonReader::object(const std::string& key) const {
+  const Json& value = at(key);
+  if (!value.is_object()) wrong_type(key, "an object", value);
+  return value;
+}
+
+const Json& JsonReader::array(const std::string& key) const {
+  const Json& value = at(key);
+  if (!value.is_array()) wrong_type(key, "an array", value);
+  return value;
+}
+
+void JsonReader::accept_only(const std::set<std::string>& known) const {
+  std::string list;
+  for (const std::string& key : known) list += (list.empty() ? "" : ", ") + key;
+  for (const auto& item : json_.items())
+    if (known.count(item.key()) == 0)
+      throw InputError(where_ + ": unknown key '" + item.key() + "'; known are " + list);
+}
+
+}  // namespace esfem

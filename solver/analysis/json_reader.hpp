@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+namespace esfem {
+
+/// Reads a JSON object key by key; every error is an InputError headed by `where` that names the key, what
+/// was expected and what was found. The JSON must outlive the reader.
+class JsonReader {
+ public:
+  /// Throws unless `object` is a JSON object.
+  JsonReader(const nlohmann::json& object, std::string where);
+
+  bool has(const std::string& key) const { return json_.contains(key); }
+  std::string text(const std::string& key) const;
+  double number(const std::string& key) const;
+  double number_or(const std::string& key, double otherwise) const {
+    return has(key) ? number(key) : otherwise;
+  }
+  int integer(const std::string& key) const;
+  const nlohmann::json& object(const std::string& key) const;
+  const nlohmann::json& array(const std::string& key) const;
+  /// Throws when there is a key that is not in `known`, and lists these.
+  void accept_only(const std::set<std::string>& known) const;
+  [[noreturn]] void wrong_type(const std::string& key, const char* expected,
+                               const nlohmann::json& found) const;
+  const std::string& where() const { return where_; }
+
+ private:
+  const nlohmann::json& at(const std::string& key) const;
+
+  const nlohmann::json& json_;
+  std::string where_;
+};
+
+}  // namespace esfem
