@@ -17,8 +17,6 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "solver/error.hpp"
-
 namespace esfem {
 namespace {
 
@@ -91,10 +89,11 @@ Mesh extract(const Complex& complex, const Surface& surface) {
   }
   Mesh mesh;
   mesh.nodes.resize(points.size(), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) mesh.nodes.row(i) = surface.closest_point(points[i]);
+  for (std::size_t i = 0; i < points.size(); ++i) mesh.nodes.row(i) = points[i];
   mesh.elements.resize(triangles.size(), 3);
   for (std::size_t i = 0; i < triangles.size(); ++i)
     for (int j = 0; j < 3; ++j) mesh.elements(i, j) = triangles[i][j];
+  project_nodes(mesh, surface);
   return mesh;
 }
 
@@ -102,7 +101,8 @@ Mesh extract(const Complex& complex, const Surface& surface) {
 
 Mesh delaunay_surface_mesh(const Surface& surface, const SizeFunction& size) {
   CGAL::get_default_random() = CGAL::Random(0);  // the mesher shoots its first rays with it
-  const double radius = surface.bounding_radius;
+  const double radius =
+      1.5 * surface.bounding_radius;  // rays are clipped to this ball: the surface lies well inside
   const auto level = [&surface](const Point& p) { return surface.level(to_vector(p)); };
   using Implicit = CGAL::Implicit_surface_3<Kernel, decltype(level)>;
   Triangulation triangulation;

@@ -62,12 +62,12 @@ void check_quality(const Mesh& mesh, const Surface& surface, double relative_edg
       std::abs(relative_edge - 1) <= promise.deviation)
     return;
   throw NumericsError(
-      format("%s: mesh of %d vertices with smallest angle %.1f degrees (element %d), mean radius ratio %.3f, "
-             "largest edge "
-             "%.2f times the one asked for; expected at least %g, %g, and 1 within %g",
-             surface.name.c_str(), int(mesh.nodes.rows()), quality.min_angle, quality.worst_element,
-             quality.mean_radius_ratio, relative_edge, promise.min_angle, promise.mean_radius_ratio,
-             promise.deviation));
+      format("%s: mesh of %d vertices with smallest angle %.1f degrees, mean radius ratio %.3f (smallest "
+             "%.3f, element %d), "
+             "largest edge %.2f times the one asked for; expected at least %g, %g, and 1 within %g",
+             surface.name.c_str(), int(mesh.nodes.rows()), quality.min_angle, quality.mean_radius_ratio,
+             quality.min_radius_ratio, quality.worst_element + 1, relative_edge, promise.min_angle,
+             promise.mean_radius_ratio, promise.deviation));
 }
 
 /// Vertices along a Hilbert curve, every triangle from its lowest vertex on, triangles in the order of these:
@@ -100,15 +100,17 @@ Mesh generate(const Surface& surface, const SizeFunction& edge_length, const Pro
   // try.
   for (int attempt = 0; attempt < attempts && std::abs(relative_edge - 1) > promise.deviation * 2 / 3;
        ++attempt) {
-    if (attempt > 0) scale /= relative_edge;
+    // A size function that jumps has edges far too long on the fine side: no density cures that.
+    if (attempt > 0) scale /= std::clamp(relative_edge, 0.8, 1.25);
     mesh = delaunay_surface_mesh(surface, [&](const Vec3& y) { return scale * edge_length(y); });
     check_resolution(mesh, surface, edge_length);
     check_topology(mesh, surface);
     relax(mesh, surface, edge_length);
     relative_edge = largest_relative_edge(mesh, edge_length);
   }
+  mesh = renumber(mesh);
   check_quality(mesh, surface, relative_edge, promise);
-  return renumber(mesh);
+  return mesh;
 }
 
 void check_positive(double edge_length, const Surface& surface) {

@@ -177,9 +177,10 @@ void relax(Mesh& mesh, const Surface& surface, const SizeFunction& size) {
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = step_to_surface(surface, x[i] + step_length * force[i]);
     flip_to_delaunay(triangulation, x);
   }
-  for (std::size_t i = 0; i < x.size(); ++i) mesh.nodes.row(i) = surface.closest_point(x[i]);
+  for (std::size_t i = 0; i < x.size(); ++i) mesh.nodes.row(i) = x[i];
   for (int t = 0; t < triangulation.size(); ++t)
     for (int i = 0; i < 3; ++i) mesh.elements(t, i) = triangulation.corner[t][i];
+  project_nodes(mesh, surface);
 }
 
 }  // namespace esfem
