@@ -7,11 +7,11 @@ namespace esfem {
 /// command line's own check then reports it).
 int threads_asked(int argc, char** argv);
 
-/// Makes sure that the process and every library in it use at most the number of threads asked for on the
-/// command line. OpenBLAS starts its threads when it is loaded and CHOLMOD's OpenMP reads its limit then,
-/// long before main, so the only safe way is to set OMP_NUM_THREADS, OMP_THREAD_LIMIT and
-/// OPENBLAS_NUM_THREADS and to start the program again in the same process, once. Returns at once when they
-/// were set so already. The first call in main.
+/// Makes sure that no library in the process works with more threads than the command line asks for. OpenBLAS
+/// starts its threads when it is loaded and CHOLMOD's OpenMP reads its limit then, long before main, so the
+/// only safe way is to set OMP_NUM_THREADS, OMP_THREAD_LIMIT and OPENBLAS_NUM_THREADS and to start the
+/// program again in the same process, once. Returns at once when they were set so already. The first call in
+/// main.
 void limit_threads(int argc, char** argv);
 
 }  // namespace esfem

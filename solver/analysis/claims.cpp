@@ -100,22 +100,35 @@ struct Selection {
   std::vector<double> h, tau, error;
 };
 
-/// Throws InputError when the rows in range do not all have the error.
+bool is_selected(const Row& row, const Claim& claim) {
+  if (!claim.variant.empty() && variant(row) != claim.variant) return false;
+  // A run that failed before h was measured may be one of any h.
+  RowRange range = claim.rows;
+  if (row.status != "ok" && row.h == 0) range.h_min = 0;
+  return in_range(row, range);
+}
+
+/// Throws InputError when the rows in range are none, of several variants, or do not all have the error.
 Selection select(const Claim& claim, const Table& table) {
   Selection selection;
+  std::set<std::string> variants;
   for (const Row& row : table.rows) {
-    if (!in_range(row, claim.rows) || variant(row) != claim.variant) continue;
+    if (!is_selected(row, claim)) continue;
     if (row.status != "ok") throw InputError("cell " + row.cell + " " + row.status);
     const auto norms = row.errors.find(claim.quantity);
     if (norms == row.errors.end() || norms->second.count(claim.norm) == 0)
       throw InputError("cell " + row.cell + " has no error " + claim.quantity + " " + claim.norm);
+    const double error = norms->second.at(claim.norm);
+    if (!std::isfinite(error)) throw InputError("the error of cell " + row.cell + " is not finite");
     selection.h.push_back(row.h);
     selection.tau.push_back(row.tau);
-    selection.error.push_back(norms->second.at(claim.norm));
-    if (!std::isfinite(selection.error.back()))
-      throw InputError("the error of cell " + row.cell + " is not finite");
+    selection.error.push_back(error);
+    variants.insert(variant(row));
   }
-  if (selection.error.empty()) throw InputError("no row of the table is in the range of the claim");
+  if (variants.empty()) throw InputError("no row of the table is in the range of the claim");
+  if (variants.size() > 1)
+    throw InputError("rows of the variants '" + *variants.begin() + "' and '" + *variants.rbegin() +
+                     "' are in range; rows.variant selects one");
   return selection;
 }
 

@@ -29,7 +29,7 @@ struct Claim {
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
   RowRange rows;
-  std::string variant;            ///< as variant(row); "" takes rows without one
+  std::string variant;            ///< as variant(row); "" when all rows in range are of one
   std::set<std::string> presets;  ///< where it is checked; empty: everywhere
 };
 
@@ -55,8 +55,8 @@ struct Verdict {
   int rows_used = 0;
 };
 
-/// A claim that nothing can be measured for (no rows in range, a failed one among them, no such quantity,
-/// round-off, no order determined) is not met.
+/// A claim that nothing can be measured for (no rows in range, a failed one or several variants among them,
+/// no such quantity, round-off, no order determined) is not met.
 Verdict check_claim(const Claim& claim, const Table& table);
 
 /// Whether the claim is checked at the table's preset, its parameters["preset"]; a table without one is held

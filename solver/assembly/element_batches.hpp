@@ -26,7 +26,7 @@ struct Batch {
 struct BatchPoint {
   Pack tangent_xi[3], tangent_eta[3];
   Pack normal[3];  ///< t_xi x t_eta; its length is the Jacobian
-  Pack jacobian;
+  Pack jacobian, inverse_jacobian;
 };
 
 /// Eight truth values, -1 or 0.
@@ -76,7 +76,9 @@ class ElementBatches {
       }
     }
     cross(out.tangent_xi, out.tangent_eta, out.normal);
-    out.jacobian = sqrt(dot(out.normal, out.normal));
+    const Pack squared = dot(out.normal, out.normal);
+    out.inverse_jacobian = inverse_sqrt(squared);
+    out.jacobian = squared * out.inverse_jacobian;
     const Pack upright = dot(out.normal, batch.direction);
     return (upright > smallest_jacobian * batch.size) & (upright < largest_jacobian * batch.size);
   }

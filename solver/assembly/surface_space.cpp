@@ -115,6 +115,8 @@ void SurfaceSpace::assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix&
   require_matrix(A);
   M.values.setZero();
   A.values.setZero();
+  double* mass = M.values.data();
+  double* stiffness = A.values.data();
   const std::vector<std::pair<int, int>> pairs = node_pairs(batches_.nodes());
   Batch batch;
   BatchPoint point;
@@ -125,7 +127,7 @@ void SurfaceSpace::assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix&
       regular &= batches_.evaluate(batch, q, point);
       const Pack weight = batch.one * batches_.weight(q);
       mass_point_[q] = weight * point.jacobian;
-      const Pack scale = weight / point.jacobian;
+      const Pack scale = weight * point.inverse_jacobian;
       stiffness_point_[3 * q] = scale * dot(point.tangent_eta, point.tangent_eta);
       stiffness_point_[3 * q + 1] = -scale * dot(point.tangent_xi, point.tangent_eta);
       stiffness_point_[3 * q + 2] = scale * dot(point.tangent_xi, point.tangent_xi);
@@ -140,11 +142,10 @@ void SurfaceSpace::assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix&
     }
     sum_table(mass_table_, mass_point_, entries_, mass_entry_);
     const int* position = &position_[b * entries_ * pack_size];
-    for (int k = 0; k < entries_; ++k) {
+    for (int k = 0; k < entries_; ++k, position += pack_size) {
       for (int lane = 0; lane < pack_size; ++lane) {
-        const int to = position[pack_size * k + lane];
-        M.values[to] += mass_entry_[k][lane];
-        A.values[to] += stiffness_entry_[k][lane];
+        mass[position[lane]] += mass_entry_[k][lane];
+        stiffness[position[lane]] += stiffness_entry_[k][lane];
       }
     }
   }

@@ -11,7 +11,7 @@ inline SurfaceSpace::DualTangents SurfaceSpace::dual_tangents(const BatchPoint& 
   DualTangents dual;
   cross(point.tangent_eta, point.normal, dual.xi);
   cross(point.normal, point.tangent_xi, dual.eta);
-  const Pack scale = 1.0 / (point.jacobian * point.jacobian);
+  const Pack scale = point.inverse_jacobian * point.inverse_jacobian;
   for (int i = 0; i < 3; ++i) {
     dual.xi[i] *= scale;
     dual.eta[i] *= scale;
@@ -33,10 +33,9 @@ PointData<inputs> SurfaceSpace::point_data(const Batch& batch, int q, const Batc
       eta[c] += shape[a].deta * u[a][c];
     }
   }
-  const Pack scale = 1.0 / geometry.jacobian;
   for (int i = 0; i < 3; ++i) {
     data.x[i] = x[i];
-    data.normal[i] = geometry.normal[i] * scale;
+    data.normal[i] = geometry.normal[i] * geometry.inverse_jacobian;
     for (int c = 0; c < inputs; ++c) data.grad[c][i] = xi[c] * dual.xi[i] + eta[c] * dual.eta[i];
   }
   for (int c = 0; c < inputs; ++c) data.u[c] = value[c];

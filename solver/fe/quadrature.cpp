@@ -63,4 +63,16 @@ Quadrature default_quadrature(int fe_degree) {
   return symmetric_quadrature(degree_of_rule[fe_degree - 1]);
 }
 
+Quadrature parse_quadrature(const std::string& text) {
+  const size_t colon = text.find(':');
+  const std::string kind = text.substr(0, colon),
+                    number = colon == std::string::npos ? "" : text.substr(colon + 1);
+  const bool is_number =
+      !number.empty() && number.size() < 4 && number.find_first_not_of("0123456789") == std::string::npos;
+  if (is_number && kind == "conical") return conical_quadrature(std::stoi(number));
+  if (is_number && kind == "degree") return symmetric_quadrature(std::stoi(number));
+  throw InputError("quadrature: found '" + text +
+                   "'; expected conical:N or degree:D, such as conical:6 or degree:8");
+}
+
 }  // namespace esfem

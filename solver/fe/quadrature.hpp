@@ -25,4 +25,7 @@ Quadrature conical_quadrature(int n);
 /// The rule for P_k elements when nothing else is asked for.
 Quadrature default_quadrature(int fe_degree);
 
+/// The rule named "conical:N" or "degree:D"; throws InputError that lists these forms.
+Quadrature parse_quadrature(const std::string& text);
+
 }  // namespace esfem

@@ -81,4 +81,47 @@ MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu
   return state;
 }
 
+MeanCurvatureFlow::State exact_mean_curvature_state(const ExactEvolution& exact, const Field& x0, double t) {
+  Field x = exact.trajectories(x0, t);
+  const Field values = exact.nodal_values(x, t);
+  return mean_curvature_state(t, std::move(x), values.middleCols(exact.column("nu"), 3),
+                              values.col(exact.column("H")));
+}
+
+MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const Field& x) {
+  Field nu(x.rows(), 3), H(x.rows(), 1);
+  for (int j = 0; j < x.rows(); ++j) {
+    const Surface::Shape shape = surface.shape_at(x.row(j));
+    nu.row(j) = shape.normal;
+    H(j, 0) = shape.weingarten.trace();
+  }
+  return mean_curvature_state(0, x, nu, H);
+}
+
+MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space, const Field& x) {
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(x, M, A);
+  SparseCholesky cholesky(space.pattern());
+  cholesky.factorise(1.0, M, 0.0, A);
+  const auto normals = [](const PointData<3>& p, Integrand<3, 0>& load) {
+    for (int l = 0; l < 3; ++l) load.value[l] = p.normal[l];
+  };
+  Field nu, H;
+  space.assemble_load<3, 3, 0>(x, x, normals, nu);
+  cholesky.solve(nu);
+  nu.rowwise().normalize();
+  const auto divergence = [](const PointData<3>& p, Integrand<1, 0>& load) {
+    load.value[0] = p.grad[0][0] + p.grad[1][1] + p.grad[2][2];
+  };
+  space.assemble_load<3, 1, 0>(x, nu, divergence, H);
+  cholesky.solve(H);
+  return mean_curvature_state(0, x, nu, H);
+}
+
+Field table_columns(const MeanCurvatureFlow::State& state) {
+  Field columns(state.x.rows(), 10);
+  columns << state.x, state.v, state.u;
+  return columns;
+}
+
 }  // namespace esfem

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/exact_evolution.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
 #include "solver/time/history.hpp"
 
@@ -47,5 +48,20 @@ class MeanCurvatureFlow {
 
 /// The state with given positions, normals (N x 3) and mean curvatures (N x 1), and v = -H nu in the nodes.
 MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu, const Field& H);
+
+/// The state whose nodal values are an exact solution's with quantities nu and H, in the nodes that start at
+/// x0.
+MeanCurvatureFlow::State exact_mean_curvature_state(const ExactEvolution& exact, const Field& x0, double t);
+
+/// The state whose nodal values are the normals and mean curvatures of a surface that its nodes x lie on; t =
+/// 0.
+MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const Field& x);
+
+/// A state for a surface of which only the nodes x are known; t = 0. nu is the L2 projection of the normals
+/// of Gamma_h[x], rescaled to unit length in the nodes, and H the L2 projection of the divergence of this nu.
+MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space, const Field& x);
+
+/// x, v, nu, H side by side (N x 10), the columns of the error tables.
+Field table_columns(const MeanCurvatureFlow::State& state);
 
 }  // namespace esfem

@@ -96,23 +96,25 @@ Mesh corner_mesh(const Mesh& mesh) {
 }
 
 void project_nodes(Mesh& mesh, const Surface& surface) {
+  // A triangle of a mesh that belongs to the surface is nowhere further from it than half an edge.
+  const double reach = 0.5 * mesh_quality(mesh.elements, mesh.nodes).h;
   for (int i = 0; i < mesh.nodes.rows(); ++i) {
     const Vec3 x = node(mesh.nodes, i);
     Vec3 y;
     try {
       y = surface.closest_point(x);
     } catch (const NumericsError& error) {
-      throw NumericsError(format("node %d: %s", i + 1, error.what()));
+      throw InputError(format("node %d: %s", i + 1, error.what()));
     }
     // Closest point is exact up to 1e-12 only; one Newton step along the normal takes |d| to round-off.
     const LevelSetJet d = surface.level_set(y);
     y -= d.value / d.gradient.squaredNorm() * d.gradient;
     const double distance = (y - x).norm();
-    if (!(distance < surface.smallest_curvature_radius))
-      throw NumericsError(
-          format("node %d (%g, %g, %g) is %g away from the surface %s, less than its smallest radius of "
-                 "curvature %g expected",
-                 i + 1, x[0], x[1], x[2], distance, surface.name.c_str(), surface.smallest_curvature_radius));
+    if (!(distance <= reach))
+      throw InputError(format(
+          "node %d (%g, %g, %g) is %g away from the %s; expected a mesh of this surface, with nodes within "
+          "half an edge length, %g",
+          i + 1, x[0], x[1], x[2], distance, surface.name.c_str(), reach));
     mesh.nodes.row(i) = y.transpose();
   }
 }

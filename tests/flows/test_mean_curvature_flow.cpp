@@ -18,15 +18,9 @@ const std::string independent = std::string(ESFEM_SOURCE_DIR) + "/reference/inde
 using State = MeanCurvatureFlow::State;
 using Variant = MeanCurvatureFlow::Variant;
 
-/// State of the shrinking sphere of radius 2 at time t in the nodes that start at x0.
-State exact_sphere_state(const ExactEvolution& exact, const Field& x0, double t) {
-  const Field x = exact.trajectories(x0, t), values = exact.nodal_values(x, t);
-  return mean_curvature_state(t, x, values.middleCols(6, 3), values.col(9));
-}
-
 State run_sphere(const Mesh& mesh, const Quadrature& rule, const TimeGrid& grid, Variant variant = {}) {
   const ExactEvolution exact = shrinking_sphere(2);
-  const auto state = [&](double t) { return exact_sphere_state(exact, mesh.nodes, t); };
+  const auto state = [&](double t) { return exact_mean_curvature_state(exact, mesh.nodes, t); };
   const SurfaceSpace space(mesh, rule);
   MeanCurvatureFlow flow(space, variant);
   State last;
@@ -97,7 +91,7 @@ TEST(MeanCurvatureFlow, StabilisingTermPullsTheNormalToTheSurfaceNormal) {
   Mesh mesh = lagrange_mesh(icosphere(2, 2), 2);
   project_nodes(mesh, sphere(2));
   const SurfaceSpace space(mesh);
-  State start = exact_sphere_state(exact, mesh.nodes, 0);
+  State start = exact_mean_curvature_state(exact, mesh.nodes, 0);
   start.u.leftCols(3) *= 1.1;
   double length[2];
   for (int i : {0, 1}) {
@@ -110,6 +104,26 @@ TEST(MeanCurvatureFlow, StabilisingTermPullsTheNormalToTheSurfaceNormal) {
   }
   EXPECT_NEAR(length[0], 1.1, 2e-3);
   EXPECT_NEAR(length[0] - length[1], 10 * 0.01 * 0.1, 1e-3);  // alpha tau (|nu| - 1)
+}
+
+TEST(MeanCurvatureFlow, DiscreteStartApproachesTheExactOne) {
+  // A surface known by its nodes alone: normal and mean curvature get better with the mesh.
+  double previous_nu = 1, previous_H = 1;
+  for (int subdivisions : {1, 2, 3}) {
+    Mesh mesh = lagrange_mesh(icosphere(2, subdivisions), 2);
+    project_nodes(mesh, sphere(2));
+    const SurfaceSpace space(mesh);
+    const State exact = mean_curvature_state_on(sphere(2), mesh.nodes);
+    const State found = discrete_mean_curvature_state(space, mesh.nodes);
+    const double error_nu = (found.u - exact.u).leftCols(3).cwiseAbs().maxCoeff();
+    const double error_H = (found.u - exact.u).col(3).cwiseAbs().maxCoeff();
+    EXPECT_LT(error_nu, previous_nu / 4);
+    EXPECT_LT(error_H, previous_H / 2);
+    previous_nu = error_nu;
+    previous_H = error_H;
+  }
+  EXPECT_LT(previous_nu, 1e-3);
+  EXPECT_LT(previous_H, 1e-2);
 }
 
 TEST(MeanCurvatureFlow, StepsInATimeAfterTheCollapseAreAnError) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -35,7 +36,8 @@ class RunExperiment : public testing::Test {
  protected:
   void SetUp() override {
     folder = fs::path(testing::TempDir()) /
-             ("run_experiment_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+             ("run_experiment_" + std::to_string(getpid()) + "_" +
+              std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder);
     fs::create_directories(folder);
   }
@@ -44,7 +46,7 @@ class RunExperiment : public testing::Test {
   /// Variables of the environment may stand in front: run("--list", "OMP_NUM_THREADS=7").
   Outcome run(const std::string& arguments, const std::string& environment = "") const {
     const fs::path out = folder / "stdout", err = folder / "stderr";
-    const std::string command = "cd " + folder.string() + " && env -u OMP_THREAD_LIMIT " + environment +
+    const std::string command = "cd " + folder.string() + " && exec env -u OMP_THREAD_LIMIT " + environment +
                                 " " ESFEM_BINARY_DIR "/bin/fake_experiment " + arguments + " >" +
                                 out.string() + " 2>" + err.string();
     const int status = std::system(command.c_str());

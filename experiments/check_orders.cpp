@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Holds tables of results against the claims in reference/<experiment>.json.
+//
+//   check_orders results/check/mcf_sphere.json
+//   check_orders results/paper/*.json --reference reference
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "solver/analysis/claims.hpp"
+#include "solver/error.hpp"
+
+namespace {
+
+using namespace esfem;
+
+const char* const help =
+    "Holds tables of results against the claims of the papers (reference/<experiment>.json) and prints a "
+    "verdict for\n"
+    "each: whether it is met, what was measured (orders with their 95% interval), what was expected, and "
+    "from how many\n"
+    "rows.\n\n"
+    "Example:\n  check_orders results/check/mcf_sphere.json\n\n"
+    "Exit codes: 0 all claims are met, 1 wrong usage or input, 3 a claim is not met.\n";
+
+/// One line of the report, in columns.
+struct Line {
+  std::string verdict, measured, expected, rows, what, statement, reason;
+};
+
+std::string measured(const Claim& claim, const Verdict& verdict) {
+  if (!verdict.measured) return "-";
+  if (claim.kind == Claim::size) return format("%.3e", verdict.value);
+  return format("%.2f [%.2f, %.2f]", verdict.value, verdict.ci95[0], verdict.ci95[1]);
+}
+
+std::string expected(const Claim& claim) {
+  const double least = claim.kind == Claim::order ? claim.expected - claim.tolerance : claim.at_least;
+  std::string text;
+  if (std::isfinite(least)) text = format(">= %g", least);
+  if (std::isfinite(claim.at_most)) text += format("%s<= %g", text.empty() ? "" : ", ", claim.at_most);
+  return text;
+}
+
+Line describe(const Claim& claim, const Verdict& verdict) {
+  Line line;
+  line.verdict = verdict.met ? "met" : "NOT MET";
+  line.measured = measured(claim, verdict);
+  line.expected = expected(claim);
+  line.rows = std::to_string(verdict.rows_used);
+  line.what =
+      claim.quantity + " " + claim.norm + (claim.kind == Claim::order ? ", order in " + claim.variable : "");
+  line.statement = claim.id + ": " + claim.statement + " (" + claim.paper + " " + claim.place + ")";
+  line.reason = verdict.reason;
+  return line;
+}
+
+void print(const std::vector<Line>& lines) {
+  const auto width = [&](std::string Line::*column) {
+    std::size_t most = 0;
+    for (const Line& line : lines) most = std::max(most, (line.*column).size());
+    return static_cast<int>(most);
+  };
+  const int widths[] = {width(&Line::verdict), width(&Line::measured), width(&Line::expected),
+                        width(&Line::rows), width(&Line::what)};
+  for (const Line& line : lines) {
+    std::printf("  %-*s  %-*s  %-*s  %*s  %-*s  %s\n", widths[0], line.verdict.c_str(), widths[1],
+                line.measured.c_str(), widths[2], line.expected.c_str(), widths[3], line.rows.c_str(),
+                widths[4], line.what.c_str(), line.statement.c_str());
+    if (!line.reason.empty()) std::printf("  %-*s  %s.\n", widths[0], "", line.reason.c_str());
+  }
+}
+
+struct Count {
+  int met = 0, checked = 0;
+};
+
+/// Prints the verdicts on one table. A table that no claim applies to counts as one that fails.
+Count check_table(const std::string& file, const std::string& folder) {
+  const Table table = table_from_json(read_json(file), file);
+  const std::string source = folder + "/" + table.experiment + ".json";
+  const Reference reference = reference_from_json(read_json(source), source);
+  if (reference.experiment != table.experiment || reference.paper != table.paper)
+    throw InputError(source + " is about " + reference.experiment + " of " + reference.paper + ", but " +
+                     file + " is of " + table.experiment + " of " + table.paper);
+
+  Count count;
+  std::vector<Line> lines = {{"verdict", "measured", "expected", "rows", "error", "claim", ""}};
+  for (const Claim& claim : reference.claims) {
+    if (!applies(claim, table)) continue;
+    const Verdict verdict = check_claim(claim, table);
+    ++count.checked;
+    count.met += verdict.met;
+    lines.push_back(describe(claim, verdict));
+  }
+  std::printf("%s (%s): %s\n", table.experiment.c_str(), table.paper.c_str(), file.c_str());
+  if (count.checked == 0) {
+    std::printf("  NOT MET  no claim of %s applies to the preset of this table.\n\n", source.c_str());
+    return {0, 1};
+  }
+  print(lines);
+  std::printf("\n");
+  return count;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app(help);
+  std::vector<std::string> tables;
+  std::string folder = "reference";
+  app.add_option("TABLE", tables, "tables of results (JSON)");
+  app.add_option("--reference", folder, "folder of the claims")->capture_default_str();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& request) {
+    return app.exit(request);
+  } catch (const CLI::ParseError& error) {
+    throw InputError(std::string(error.what()) + "; see check_orders --help");
+  }
+  if (tables.empty()) throw InputError("no table given; see check_orders --help");
+
+  Count total;
+  for (const std::string& file : tables) {
+    const Count count = check_table(file, folder);
+    total.met += count.met;
+    total.checked += count.checked;
+  }
+  std::printf("%d of %d claims met\n", total.met, total.checked);
+  return total.met == total.checked ? exit_done : exit_claim;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "check_orders: %s\n", error.what());
+    return exit_usage;
+  }
+}

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "solver/analysis/claims.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf, testing::HasSubstr;
+
+/// Errors 0.03 h^2 + 4 tau^3 of x on the grid h = 0.5 2^(-j/2), tau = 0.2 2^-k.
+Table sample_table() {
+  Table table;
+  table.experiment = "mcf_sphere";
+  table.paper = "kll19";
+  table.parameters = {{"preset", "check"}};
+  for (int j = 0; j < 3; ++j)
+    for (int k = 0; k < 7; ++k) {
+      Row row;
+      row.cell = "h" + std::to_string(j) + "_tau" + std::to_string(k);
+      row.h = 0.5 * std::pow(2, -0.5 * j);
+      row.tau = 0.2 * std::pow(2, -k);
+      row.errors["x"]["nodal_H1"] = 0.03 * row.h * row.h + 4 * std::pow(row.tau, 3);
+      row.errors["x"]["nodal_L2"] = 1e-13 / row.tau;
+      table.rows.push_back(row);
+    }
+  return table;
+}
+
+json order_claim() {
+  return {{"id", "x-order-tau"},
+          {"statement", "x converges with order 3 in tau"},
+          {"source", {{"paper", "kll19"}, {"place", "§13.1, Fig. 13.1"}}},
+          {"kind", "order"},
+          {"quantity", "x"},
+          {"norm", "nodal_H1"},
+          {"variable", "tau"},
+          {"expected", 3},
+          {"tolerance", 0.5}};
+}
+
+json size_claim() {
+  json claim = order_claim();
+  for (const char* key : {"variable", "expected", "tolerance"}) claim.erase(key);
+  claim["id"] = "x-size";
+  claim["kind"] = "size";
+  claim["rows"] = {{"tau", 0.05}, {"h_min", 0.3}, {"h_max", 0.51}};
+  claim["at_most"] = 0.0081;
+  return claim;
+}
+
+json reference(const std::vector<json>& claims) {
+  return {{"experiment", "mcf_sphere"}, {"paper", "kll19"}, {"claims", claims}};
+}
+
+/// The claim with some keys replaced.
+Verdict check(json claim, const json& changes = json::object(), const Table& table = sample_table()) {
+  claim.update(changes);
+  return check_claim(reference_from_json(reference({claim}), "r.json").claims.at(0), table);
+}
+
+TEST(Claims, AnOrderIsMetOneSidedly) {
+  const Verdict verdict = check(order_claim());
+  EXPECT_TRUE(verdict.met) << verdict.reason;
+  EXPECT_NEAR(verdict.value, 3, 1e-4);
+  EXPECT_EQ(verdict.rows_used, 21);
+  EXPECT_LE(verdict.ci95[0], verdict.value);
+  EXPECT_GE(verdict.ci95[1], verdict.value);
+
+  EXPECT_TRUE(check(order_claim(), {{"expected", 1}}).met) << "higher than expected is good";
+  EXPECT_TRUE(check(order_claim(), {{"variable", "h"}, {"expected", 2}}).met);
+
+  const Verdict too_low = check(order_claim(), {{"expected", 4}});
+  EXPECT_FALSE(too_low.met);
+  EXPECT_THAT(too_low.reason,
+              AllOf(HasSubstr("Convergence order not achieved: 3.00"), HasSubstr("expected 4")));
+  EXPECT_FALSE(check(order_claim(), {{"variable", "h"}}).met);
+  EXPECT_FALSE(check(order_claim(), {{"at_most", 2.9}}).met);
+  EXPECT_TRUE(check(order_claim(), {{"at_most", 3.1}}).met);
+}
+
+TEST(Claims, TheRangeSelectsTheRows) {
+  EXPECT_EQ(check(order_claim(), {{"rows", {{"tau_max", 0.05}}}}).rows_used, 15);
+  EXPECT_EQ(check(order_claim(), {{"rows", {{"h", 0.5}}}}).rows_used, 7);
+  EXPECT_EQ(check(size_claim()).rows_used, 2);
+}
+
+TEST(Claims, ASizeHoldsForEveryRow) {
+  // 0.03 * 0.25 + 4 * 0.05^3 = 0.008 on the coarsest mesh
+  const Verdict verdict = check(size_claim());
+  EXPECT_TRUE(verdict.met) << verdict.reason;
+  EXPECT_NEAR(verdict.value, 0.008, 1e-12);
+  const Verdict too_large = check(size_claim(), {{"at_most", 0.0079}});
+  EXPECT_FALSE(too_large.met) << "one of the two rows is larger";
+  EXPECT_THAT(too_large.reason, HasSubstr("8.000e-03"));
+  EXPECT_FALSE(check(size_claim(), {{"at_least", 0.005}}).met);
+  EXPECT_TRUE(check(size_claim(), {{"at_least", 0.004}}).met);
+}
+
+TEST(Claims, WhatCannotBeMeasuredIsNotMet) {
+  const auto reason = [](const json& claim, const json& changes, const Table& table = sample_table()) {
+    const Verdict verdict = check(claim, changes, table);
+    EXPECT_FALSE(verdict.met);
+    EXPECT_FALSE(verdict.measured);
+    return verdict.reason;
+  };
+  EXPECT_THAT(reason(size_claim(), {{"rows", {{"tau", 0.04}}}}), HasSubstr("no row"));
+  EXPECT_THAT(reason(order_claim(), {{"quantity", "y"}}), HasSubstr("no error y nodal_H1"));
+  EXPECT_THAT(reason(order_claim(), {{"norm", "lifted_H1"}}), HasSubstr("no error x lifted_H1"));
+  EXPECT_THAT(reason(order_claim(), {{"rows", {{"tau_min", 0.09}, {"h", 0.5}}}}), HasSubstr("2 rows"));
+  EXPECT_THAT(reason(order_claim(), {{"rows", {{"tau", 0.05}}}}), HasSubstr("depend on tau"));
+  EXPECT_THAT(reason(order_claim(), {{"norm", "nodal_L2"}}), HasSubstr("round-off"));
+
+  Table failed = sample_table();
+  failed.rows[3].status = "failed: step 3, t = 0.1: degenerate element 7";
+  EXPECT_THAT(reason(order_claim(), json::object(), failed),
+              AllOf(HasSubstr("h0_tau3"), HasSubstr("element 7")));
+  EXPECT_TRUE(check(order_claim(), {{"rows", {{"h_max", 0.4}}}}, failed).met)
+      << "the failed row is out of range";
+  failed.rows[3].h = 0;
+  EXPECT_THAT(reason(order_claim(), {{"rows", {{"h_min", 0.1}}}}, failed), HasSubstr("element 7"));
+
+  Table zero = sample_table();
+  zero.rows[0].errors["x"]["nodal_H1"] = 0;
+  EXPECT_THAT(reason(order_claim(), json::object(), zero), HasSubstr("positive"));
+  zero.rows[0].errors["x"]["nodal_H1"] = std::nan("");
+  EXPECT_THAT(reason(size_claim(), {{"rows", json::object()}}, zero), HasSubstr("not finite"));
+}
+
+TEST(Claims, VariantsAreNotMixed) {
+  Table table = sample_table();
+  for (Row row : sample_table().rows) {
+    row.cell += "_dziuk";
+    row.more["variant"] = "dziuk";
+    row.errors["x"]["nodal_H1"] = row.tau;
+    table.rows.push_back(row);
+  }
+  EXPECT_THAT(check(order_claim(), json::object(), table).reason, HasSubstr("rows.variant"));
+  EXPECT_NEAR(check(order_claim(), {{"rows", {{"variant", "variant=dziuk"}}}}, table).value, 1, 1e-6);
+}
+
+TEST(Claims, PresetsRestrictWhereAClaimIsChecked) {
+  json json_claim = order_claim();
+  const auto applies_to = [&](const json& parameters) {
+    Table table = sample_table();
+    table.parameters = parameters;
+    return applies(reference_from_json(reference({json_claim}), "r.json").claims.at(0), table);
+  };
+  EXPECT_TRUE(applies_to({{"preset", "check"}}));
+  json_claim["presets"] = json::array({"paper"});
+  EXPECT_FALSE(applies_to({{"preset", "check"}}));
+  EXPECT_TRUE(applies_to({{"preset", "paper"}}));
+  EXPECT_TRUE(applies_to(json::object()));
+}
+
+std::string reading(const json& file) {
+  try {
+    reference_from_json(file, "r.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Claims, ReadingNamesClaimAndKey) {
+  const auto with = [](json claim, const json& changes) {
+    claim.update(changes);
+    return reading(reference({claim}));
+  };
+  EXPECT_EQ(reading(reference({order_claim(), size_claim()})), "no error");
+  EXPECT_THAT(reading(reference({})), HasSubstr("no claim"));
+  EXPECT_THAT(reading(reference({order_claim(), order_claim()})), HasSubstr("occurs twice"));
+  EXPECT_THAT(
+      with(order_claim(), {{"tolerence", 1}}),
+      AllOf(HasSubstr("r.json, claim 1 'x-order-tau'"), HasSubstr("'tolerence'"), HasSubstr("tolerance")));
+  EXPECT_THAT(with(order_claim(), {{"rows", {{"tau_mx", 1}}}}),
+              AllOf(HasSubstr("rows"), HasSubstr("'tau_mx'")));
+  EXPECT_THAT(with(order_claim(), {{"rows", {{"tau", 1}, {"tau_max", 1}}}}), HasSubstr("excludes"));
+  EXPECT_THAT(with(order_claim(), {{"rows", {{"h_min", 2}, {"h_max", 1}}}}), HasSubstr("no h is in"));
+  EXPECT_THAT(with(order_claim(), {{"kind", "slope"}}), HasSubstr("expected order or size"));
+  EXPECT_THAT(with(order_claim(), {{"variable", "t"}}), HasSubstr("expected h or tau"));
+  EXPECT_THAT(with(order_claim(), {{"tolerance", "some"}}), HasSubstr("a number"));
+  EXPECT_THAT(with(order_claim(), {{"presets", json::array({"chek"})}}), HasSubstr("\"chek\""));
+  EXPECT_THAT(with(size_claim(), {{"expected", 3}}), HasSubstr("unknown key 'expected'"));
+  json claim = size_claim();
+  claim.erase("at_most");
+  EXPECT_THAT(reading(reference({claim})), HasSubstr("'at_most' or 'at_least'"));
+  claim = order_claim();
+  claim.erase("tolerance");
+  EXPECT_THAT(reading(reference({claim})), HasSubstr("'tolerance' is missing"));
+  json file = reference({order_claim()});
+  file["note"] = "";
+  EXPECT_THAT(reading(file), HasSubstr("unknown key 'note'"));
+}
+
+/// Runs the program on files in a folder of its own.
+struct CheckOrders : testing::Test {
+  std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / ("esfem_check_" + std::to_string(getpid()));
+  CheckOrders() { std::filesystem::create_directories(folder); }
+  ~CheckOrders() override { std::filesystem::remove_all(folder); }
+
+  int exit_code(const std::string& arguments) const {
+    const std::string command = std::string(ESFEM_BINARY_DIR) + "/bin/check_orders " + arguments +
+                                " --reference " + folder.string() + " > " + (folder / "out").string() +
+                                " 2>&1";
+    return WEXITSTATUS(std::system(command.c_str()));
+  }
+
+  std::string output() const {
+    std::ifstream stream(folder / "out");
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+
+  int exit_code_of(const std::vector<json>& claims) const {
+    write_file((folder / "mcf_sphere.json").string(), reference(claims).dump());
+    write_file((folder / "table.json").string(), to_json(sample_table()).dump());
+    return exit_code((folder / "table.json").string());
+  }
+};
+
+TEST_F(CheckOrders, ExitCodesAreTheVerdict) {
+  json not_met = size_claim(), elsewhere = order_claim();
+  not_met["at_most"] = 1e-9;
+  elsewhere["presets"] = json::array({"paper"});
+  EXPECT_EQ(exit_code_of({order_claim(), size_claim()}), exit_done);
+  EXPECT_EQ(exit_code_of({order_claim(), not_met}), exit_claim);
+  EXPECT_THAT(output(), AllOf(HasSubstr("3.00 ["), HasSubstr("NOT MET"), HasSubstr("1 of 2 claims met")));
+  EXPECT_EQ(exit_code_of({elsewhere, size_claim()}), exit_done);
+  EXPECT_EQ(exit_code_of({elsewhere}), exit_claim) << "a check that asserts nothing does not pass";
+  EXPECT_EQ(exit_code("no_such_table.json"), exit_usage);
+  EXPECT_EQ(exit_code(""), exit_usage);
+  EXPECT_EQ(exit_code("--no-such-option"), exit_usage);
+  EXPECT_THAT(output(), HasSubstr("--no-such-option"));
+  EXPECT_EQ(exit_code("--help"), exit_done);
+}
+
+}  // namespace
+}  // namespace esfem
