@@ -101,7 +101,7 @@ build-stems: configure
 	@$(call build_targets,--target experiments)
 
 test:
-	@ctest --test-dir build --output-on-failure -j$(local_jobs)
+	@ctest --test-dir build --output-on-failure -j$(local_jobs) | { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
 
 format:
 	@clang-format -i $(sources)
@@ -122,8 +122,7 @@ plots-check:
 	+@$(call run,check,$(stems),figures)
 
 verdicts:
-	@tables=$$(ls results/check/*.json 2>/dev/null || true)
-	if [ -z "$$tables" ]; then echo "no tables"; else $(BIN)/check_orders $$tables; fi
+	@$(if $(stems),$(BIN)/check_orders $(stems:%=results/check/%.json),echo "no experiments")
 
 bench: configure
 	@$(call build_targets,--target bench_step)
