@@ -111,7 +111,7 @@ int run(int argc, char** argv) {
   CLI::App app(help);
   std::vector<std::string> tables;
   std::string folder = "reference";
-  app.add_option("TABLE", tables, "tables of results (JSON)")->required();
+  app.add_option("TABLE", tables, "tables of results (JSON)");
   app.add_option("--reference", folder, "folder of the claims")->capture_default_str();
   try {
     app.parse(argc, argv);
@@ -120,6 +120,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     throw InputError(std::string(error.what()) + "; see check_orders --help");
   }
+  if (tables.empty()) throw InputError("no table given; see check_orders --help");
 
   Count total;
   for (const std::string& file : tables) {

@@ -14,8 +14,8 @@ struct InputError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The numerics failed (exit 2): non-finite value, degenerate element (with its number), factorisation failed.
-/// Low levels say what and where; the time loop adds the step and the time by `at`.
+/// The numerics failed (exit 2): non-finite value, degenerate element (with its number), factorisation
+/// failed. Low levels say what and where; the time loop adds the step and the time by `at`.
 struct NumericsError : std::runtime_error {
   using std::runtime_error::runtime_error;
   /// The same error with step and time in front.

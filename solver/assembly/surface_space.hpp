@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
+#include <vector>
+
+#include "solver/assembly/element_batches.hpp"
 #include "solver/assembly/pack.hpp"
 #include "solver/assembly/symmetric_matrix.hpp"
 #include "solver/fe/quadrature.hpp"
@@ -11,10 +15,10 @@ namespace esfem {
 /// What an integrand sees at one quadrature point of eight elements at once.
 template <int inputs>
 struct PointData {
-  Pack x[3];             ///< position on Gamma_h[x]
-  Pack normal[3];        ///< unit normal of Gamma_h[x], outward
-  Pack u[inputs];        ///< values of the input components
-  Pack grad[inputs][3];  ///< their tangential gradients
+  Pack x[3];                              ///< position on Gamma_h[x]
+  Pack normal[3];                         ///< unit normal of Gamma_h[x], outward
+  Pack u[inputs > 0 ? inputs : 1];        ///< values of the input components
+  Pack grad[inputs > 0 ? inputs : 1][3];  ///< their tangential gradients
 };
 
 /// What an integrand returns: the load of output component l is the integral of value[l] phi_j, plus
@@ -25,34 +29,38 @@ struct Integrand {
   Pack flux[fluxes > 0 ? fluxes : 1][3];
 };
 
-/// S_h[x] of kll19 §3.1: isoparametric P_k functions on the surface Gamma_h[x] that the nodal vector x determines.
-/// Topology, sparsity and scatter map are fixed at construction; matrices and loads are filled for any x.
-/// Every function of x throws NumericsError with the element's number when an element is degenerate (Jacobian not
-/// positive relative to the element's size, or not finite).
+/// S_h[x] of kll19 §3.1: isoparametric P_k functions on the surface Gamma_h[x] that the nodal vector x
+/// determines. Topology, sparsity and scatter map are fixed at construction; matrices and loads are filled
+/// for any x, without allocation. The work space is a member: one object is used by one thread at a time.
+/// Every function of x throws NumericsError with the element's number when an element is degenerate (Jacobian
+/// not positive relative to the element's size, or not finite), and InputError when a field has not one row a
+/// node.
 class SurfaceSpace {
  public:
   SurfaceSpace(const Mesh& mesh, const Quadrature& rule);
   /// With default_quadrature(mesh.degree).
   explicit SurfaceSpace(const Mesh& mesh);
 
-  int degree() const;
-  int dofs() const;
-  int element_count() const;
-  const Connectivity& elements() const;
-  const Quadrature& quadrature() const;
-  std::shared_ptr<const SparsityPattern> pattern() const;
+  int degree() const { return degree_; }
+  int dofs() const { return pattern_->size; }
+  int element_count() const { return static_cast<int>(elements_.rows()); }
+  const Connectivity& elements() const { return elements_; }
+  const Quadrature& quadrature() const { return rule_; }
+  std::shared_ptr<const SparsityPattern> pattern() const { return pattern_; }
   /// A zero matrix on the pattern.
   SymmetricMatrix matrix() const;
 
-  /// M(x) and A(x) of kll19 §3.3, both in one pass.
+  /// M(x) and A(x) of kll19 §3.3, both in one pass. Both are matrices of this space.
   void assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix& A) const;
 
   /// Integral of weight phi_i phi_j; weight(const PointData<inputs>&) -> Pack, u: N x inputs.
   template <int inputs, class Weight>
-  void assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight, SymmetricMatrix& out) const;
+  void assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight,
+                              SymmetricMatrix& out) const;
 
   /// Load functionals: out (N x outputs) = integral of value phi_j + flux . grad phi_j over Gamma_h[x], where
-  /// integrand(const PointData<inputs>&, Integrand<outputs, fluxes>&) fills value and flux from u (N x inputs).
+  /// integrand(const PointData<inputs>&, Integrand<outputs, fluxes>&) fills value and flux from u (N x
+  /// inputs).
   template <int inputs, int outputs, int fluxes, class Function>
   void assemble_load(const Field& x, const Field& u, const Function& integrand, Field& out) const;
 
@@ -60,6 +68,39 @@ class SurfaceSpace {
   double area(const Field& x) const;
   /// Enclosed volume, one third of the integral of x . nu.
   double volume(const Field& x) const;
+
+ private:
+  /// Contravariant tangents: grad u = u_xi dual_xi + u_eta dual_eta, from the first fundamental form.
+  struct DualTangents {
+    Pack xi[3], eta[3];
+  };
+
+  void require_rows(const Field& field, int columns) const;
+  void require_matrix(const SymmetricMatrix& matrix) const;
+  static DualTangents dual_tangents(const BatchPoint& point);
+  template <int inputs>
+  PointData<inputs> point_data(const Batch& batch, int q, const BatchPoint& geometry,
+                               const DualTangents& dual, const Pack (*u)[inputs + 1]) const;
+  /// Integral of function(batch, shapes, point) against dxi deta.
+  template <class Function>
+  double integrate(const Field& x, const Function& function) const;
+  /// Element mass matrices of a batch from mass_point_, added to M.
+  void add_mass(const Batch& batch, SymmetricMatrix& M) const;
+
+  int degree_;
+  Connectivity elements_;
+  Quadrature rule_;
+  std::shared_ptr<const SparsityPattern> pattern_;
+  ElementBatches batches_;
+  int off_diagonals_, entries_;     ///< number in the lower triangle of an element matrix
+  std::vector<int> position_;       ///< batches x entries x lanes: where it goes in M.values
+  std::vector<double> mass_table_;  ///< see pair_table in the .cpp
+  std::vector<double> stiffness_table_;
+  mutable std::vector<Pack> mass_point_;       ///< work space: one integration weight a point
+  mutable std::vector<Pack> stiffness_point_;  ///< work space: three metric terms a point
+  mutable std::vector<Pack> mass_entry_, stiffness_entry_;
 };
 
 }  // namespace esfem
+
+#include "solver/assembly/surface_space_templates.hpp"

@@ -13,14 +13,21 @@ struct SparsityPattern {
   int size = 0;
   std::vector<int> column_start;  ///< size + 1
   std::vector<int> row;
+
+  int entry_count() const { return static_cast<int>(row.size()); }
+  /// Position in `row` of the entry (i, j) or, above the diagonal, of (j, i), which must be in the pattern.
+  int entry(int i, int j) const;
 };
+
+/// All pairs of nodes that share an element.
+SparsityPattern element_pattern(const Connectivity& elements, int nodes);
 
 /// Symmetric N x N matrix on a fixed pattern; only the lower triangle is stored.
 struct SymmetricMatrix {
   std::shared_ptr<const SparsityPattern> pattern;
   Eigen::VectorXd values;  ///< one per entry of pattern->row
 
-  /// out = (this) u for N x c nodal values; out is resized if needed, no other allocation.
+  /// out = (this) u for N x c nodal values; out is resized if needed, no other allocation. out must not be u.
   void multiply(const Field& u, Field& out) const;
   Field operator*(const Field& u) const;
   /// trace(eᵀ (this) e), the square of the papers' norms (7.1)-(7.3) of kll19, summed over components.

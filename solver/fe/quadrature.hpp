@@ -18,11 +18,14 @@ struct Quadrature {
 /// Throws InputError beyond the largest tabulated degree (the message names it and the conical rules).
 Quadrature symmetric_quadrature(int degree);
 
-/// Conical product Gauss n x n: xi = s(1 - t), eta = t with Gauss points s, t in (0, 1), weights w_s w_t (1 - t);
-/// exact to degree 2n - 2. Throws InputError unless 1 <= n <= 64.
+/// Conical product Gauss n x n: xi = s(1 - t), eta = t with Gauss points s, t in (0, 1), weights
+/// w_s w_t (1 - t); exact to degree 2n - 2. Throws InputError unless 1 <= n <= 64.
 Quadrature conical_quadrature(int n);
 
 /// The rule for P_k elements when nothing else is asked for.
 Quadrature default_quadrature(int fe_degree);
+
+/// The rule named "conical:N" or "degree:D"; throws InputError that lists these forms.
+Quadrature parse_quadrature(const std::string& text);
 
 }  // namespace esfem

@@ -7,7 +7,8 @@
 
 namespace esfem {
 
-/// Cholesky factorisation of matrices on one pattern (CHOLMOD, supernodal): nested dissection once, numbers per call.
+/// Cholesky factorisation of matrices on one pattern (CHOLMOD, supernodal): nested dissection once, numbers
+/// per call.
 class SparseCholesky {
  public:
   /// Symbolic analysis.

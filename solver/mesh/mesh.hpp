@@ -15,15 +15,15 @@ struct Mesh {
   Connectivity elements;  ///< E x (k+1)(k+2)/2, node order of fe/lagrange.hpp, outward orientation
 };
 
-/// The P_k mesh with the same element maps as the given one (nodes at the reference nodes of degree k, not projected
-/// onto any surface). The same degree gives the mesh unchanged, with its node order.
+/// The P_k mesh with the same element maps as the given one (nodes at the reference nodes of degree k, not
+/// projected onto any surface). The same degree gives the mesh unchanged, with its node order.
 Mesh lagrange_mesh(const Mesh& mesh, int degree);
 
 /// The corner triangles as a P1 mesh; keeps the corners' order, drops the other nodes.
 Mesh corner_mesh(const Mesh& mesh);
 
-/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws NumericsError with
-/// the node's number when a node is too far from the surface.
+/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws NumericsError
+/// with the node's number when a node is too far from the surface.
 void project_nodes(Mesh& mesh, const Surface& surface);
 
 /// Shape of the triangles between the corners (straight edges), at positions x (N x 3).

@@ -8,18 +8,18 @@
 namespace esfem {
 
 struct ReadMesh {
-  Mesh mesh;             ///< degree 1, or 2 when the file has 6-node triangles; the file's node order
-  std::string remark;    ///< empty, or what was changed ("orientation was inward: turned")
+  Mesh mesh;           ///< degree 1, or 2 when the file has 6-node triangles; the file's node order
+  std::string remark;  ///< empty, or what was changed ("orientation was inward: turned")
 };
 
-/// Reads a closed triangulated surface: Gmsh MSH 2.2 and 4.1 (.msh; 3- and 6-node triangles, curved nodes kept), OFF,
-/// OBJ, PLY, STL. Throws InputError, one line that names the file, the line or element, and what was expected, for a
-/// file that is missing, cut off, not closed, non-manifold, inconsistently oriented, with NaN, with degenerate or
-/// duplicate triangles, or with other elements.
+/// Reads a closed triangulated surface: Gmsh MSH 2.2 and 4.1 (.msh; 3- and 6-node triangles, curved nodes
+/// kept), OFF, OBJ, PLY, STL. Throws InputError, one line that names the file, the line or element, and what
+/// was expected, for a file that is missing, cut off, not closed, non-manifold, inconsistently oriented, with
+/// NaN, with degenerate or duplicate triangles, or with other elements.
 ReadMesh read_mesh(const std::string& file);
 
-/// The checks of `read_mesh` on a mesh that comes from elsewhere; `source` names it in errors. Turns an inward
-/// orientation and returns the remark.
+/// The checks of `read_mesh` on a mesh that comes from elsewhere; `source` names it in errors. Turns an
+/// inward orientation and returns the remark.
 std::string check_closed_surface(Mesh& mesh, const std::string& source);
 
 /// Writes a mesh of degree 1 or 2 as Gmsh MSH 4.1 (ASCII, 17 digits).

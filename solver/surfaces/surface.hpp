@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <ceres/jet.h>
-
 #include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
+#include "solver/surfaces/nested_jets.hpp"
 #include "solver/types.hpp"
 
 namespace esfem {
@@ -28,20 +27,29 @@ struct Surface {
   double bounding_radius;                    ///< the surface lies inside this ball around the origin
   double smallest_curvature_radius;          ///< min over the surface of 1/max(|kappa_1|, |kappa_2|)
   int euler_characteristic;
+  /// Closed form of the closest point, where there is one; otherwise Newton's method finds it.
+  std::function<Vec3(const Vec3&)> closed_form_closest_point = {};
 
   /// Outward unit normal of the level set through y. Pointwise; y need not lie on the surface.
   Vec3 normal(const Vec3& y) const;
-  /// Extended Weingarten map grad_Gamma nu = P (Hess d) P / |grad d| of the level set through y; symmetric, A nu = 0.
+  /// Extended Weingarten map grad_Gamma nu = P (Hess d) P / |grad d| of the level set through y; symmetric, A
+  /// nu = 0.
   Mat3 weingarten(const Vec3& y) const;
   /// Mean curvature kappa_1 + kappa_2 = tr grad_Gamma nu (kll19 (2.2)); 2/R on a sphere.
   double mean_curvature(const Vec3& y) const;
+  struct Shape {
+    Vec3 normal;
+    Mat3 weingarten;
+  };
+  /// Normal and Weingarten map from one evaluation of the level set.
+  Shape shape_at(const Vec3& y) const;
   /// The closest point of the surface, to 1e-12 of the bounding radius, for x near it (within the reach).
   /// Throws NumericsError when Newton's iteration does not converge.
   Vec3 closest_point(const Vec3& x) const;
 };
 
-/// A surface from a functor with `template <class T> T operator()(const T& x1, const T& x2, const T& x3) const`:
-/// gradient and Hessian come from Ceres Jets, so the formula of d is all that one writes.
+/// A surface from a functor with `template <class T> T operator()(const T& x1, const T& x2, const T& x3)
+/// const`: gradient and Hessian come from Ceres Jets, so the formula of d is all that one writes.
 template <class LevelSet>
 Surface make_surface(std::string name, LevelSet d, double bounding_radius, double smallest_curvature_radius,
                      int euler_characteristic, std::map<std::string, double> parameters = {}) {
@@ -63,8 +71,8 @@ Surface make_surface(std::string name, LevelSet d, double bounding_radius, doubl
     return result;
   };
   auto level = [d](const Vec3& y) { return d(y[0], y[1], y[2]); };
-  return {std::move(name), std::move(parameters), jet, level, bounding_radius, smallest_curvature_radius,
-          euler_characteristic};
+  return {std::move(name),           std::move(parameters), jet, level, bounding_radius,
+          smallest_curvature_radius, euler_characteristic};
 }
 
 /// {|x| = radius}
@@ -75,12 +83,5 @@ Surface ellipsoid(double a, double b, double c);
 Surface torus(double major, double minor);
 /// kll19 §13.2: d = x1² + x2² + 2 x3² (x3² - 199/200) - 0.04
 Surface dumbbell();
-
-/// One entry of the list of named surfaces: what `evolve` and `--help` know.
-struct NamedSurface {
-  std::string name;
-  std::string parameters;  ///< for --help, e.g. "axes: [a, b, c] (default [1, 1, 0.6])"
-};
-std::vector<NamedSurface> named_surfaces();
 
 }  // namespace esfem

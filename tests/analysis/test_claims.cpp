@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "solver/analysis/claims.hpp"
 #include "solver/error.hpp"
@@ -216,6 +218,11 @@ struct CheckOrders : testing::Test {
     return WEXITSTATUS(std::system(command.c_str()));
   }
 
+  std::string output() const {
+    std::ifstream stream(folder / "out");
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+  }
+
   int exit_code_of(const std::vector<json>& claims) const {
     write_file((folder / "mcf_sphere.json").string(), reference(claims).dump());
     write_file((folder / "table.json").string(), to_json(sample_table()).dump());
@@ -229,11 +236,13 @@ TEST_F(CheckOrders, ExitCodesAreTheVerdict) {
   elsewhere["presets"] = json::array({"paper"});
   EXPECT_EQ(exit_code_of({order_claim(), size_claim()}), exit_done);
   EXPECT_EQ(exit_code_of({order_claim(), not_met}), exit_claim);
+  EXPECT_THAT(output(), AllOf(HasSubstr("3.00 ["), HasSubstr("NOT MET"), HasSubstr("1 of 2 claims met")));
   EXPECT_EQ(exit_code_of({elsewhere, size_claim()}), exit_done);
   EXPECT_EQ(exit_code_of({elsewhere}), exit_claim) << "a check that asserts nothing does not pass";
   EXPECT_EQ(exit_code("no_such_table.json"), exit_usage);
   EXPECT_EQ(exit_code(""), exit_usage);
   EXPECT_EQ(exit_code("--no-such-option"), exit_usage);
+  EXPECT_THAT(output(), HasSubstr("--no-such-option"));
   EXPECT_EQ(exit_code("--help"), exit_done);
 }
 

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Time of one step of kll19 (5.1), linearly implicit BDF3 on P2 icospheres of radius 2, by phase, and its
+// ratio to a naive step. One row per mesh, N = 2.5k, 10k, 41k, 164k; milliseconds of CPU time of all threads,
+// medians.
+//
+//   bench_step                                   all sizes; the naive step up to N = 41k
+//   bench_step --benchmark_filter=nodes:163842   peak memory of one size alone (column peak_MiB)
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/naive_step.hpp"
+#include "solver/assembly/surface_space.hpp"
+#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/mesh/mesh.hpp"
+
+namespace {
+
+using namespace esfem;
+
+constexpr double R = 2, tau = 0.01, delta0 = 11.0 / 6;
+constexpr int largest_naive = 41000;
+
+double cpu_ms() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return 1e3 * now.tv_sec + 1e-6 * now.tv_nsec;
+}
+
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
+double peak_mib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (word == "VmHWM:") {
+      double kib = 0;
+      status >> kib;
+      return kib / 1024;
+    }
+  return 0;
+}
+
+/// Milliseconds of the phases of a step, in the order of the step.
+class Phases {
+ public:
+  void start() { last_ = cpu_ms(); }
+  void end(const std::string& phase) {
+    const double now = cpu_ms();
+    samples_[phase].push_back(now - last_);
+    last_ = now;
+  }
+  double operator[](const std::string& phase) const { return median(samples_.at(phase)); }
+  const std::map<std::string, std::vector<double>>& samples() const { return samples_; }
+
+ private:
+  double last_ = 0;
+  std::map<std::string, std::vector<double>> samples_;
+};
+
+/// g and f of kll19 §3.3 in one pass: columns 0-2 are g = -∫ H_h nu_h phi - ∫ grad(H_h nu_h) . grad phi,
+/// columns 3-6 are f = ∫ |grad nu_h|² (nu_h, H_h) phi; u = (nu_h, H_h).
+void mean_curvature_load(const PointData<4>& at, Integrand<7, 3>& out) {
+  Pack grad_nu_squared = {};
+  for (int l = 0; l < 3; ++l) {
+    grad_nu_squared += dot(at.grad[l], at.grad[l]);
+    out.value[l] = -at.u[3] * at.u[l];
+    for (int i = 0; i < 3; ++i) out.flux[l][i] = -(at.u[3] * at.grad[l][i] + at.u[l] * at.grad[3][i]);
+  }
+  for (int l = 0; l < 4; ++l) out.value[3 + l] = grad_nu_squared * at.u[l];
+}
+
+Field normal_and_curvature(const Mesh& mesh) {
+  Field u(mesh.nodes.rows(), 4);
+  u.leftCols(3) = mesh.nodes / R;
+  u.col(3).setConstant(2 / R);
+  return u;
+}
+
+void step(benchmark::State& state, int subdivisions) {
+  Mesh mesh = lagrange_mesh(icosphere(R, subdivisions), 2);
+  mesh.nodes = R * mesh.nodes.rowwise().normalized();
+  const Field u = normal_and_curvature(mesh);
+  const double analysis_start = cpu_ms();
+  const SurfaceSpace space(mesh);
+  SparseCholesky cholesky(space.pattern());
+  const double analysis = cpu_ms() - analysis_start;
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  Field load, v, nu_H;
+
+  Phases phases;
+  for (auto _ : state) {
+    const double begin = cpu_ms();
+    phases.start();
+    space.assemble(mesh.nodes, M, A);
+    phases.end("1_M_A");
+    space.assemble_load<4, 7, 3>(mesh.nodes, u, mean_curvature_load, load);
+    v = load.leftCols(3);
+    nu_H = load.rightCols(4);
+    phases.end("2_loads");
+    cholesky.factorise(1, M, 1, A);
+    phases.end("3_factor_K");
+    cholesky.solve(v);
+    phases.end("4_solve_3");
+    cholesky.factorise(delta0 / tau, M, 1, A);
+    phases.end("5_factor_u");
+    cholesky.solve(nu_H);
+    phases.end("6_solve_4");
+    state.SetIterationTime((cpu_ms() - begin) / 1e3);
+  }
+
+  double total = 0;
+  for (const auto& [phase, samples] : phases.samples()) {
+    state.counters[phase] = median(samples);
+    total += median(samples);
+  }
+  state.counters["7_step"] = total;
+  state.counters["8_ns_per_element"] = 1e6 * phases["1_M_A"] / space.element_count();
+  state.counters["9_once"] = analysis;
+  state.counters["peak_MiB"] = peak_mib();
+  if (space.dofs() > largest_naive) return;
+
+  std::vector<double> naive_samples;
+  const int repetitions = space.dofs() < 20000 ? 5 : 3;
+  for (int repetition = 0; repetition < repetitions; ++repetition) {
+    const double begin = cpu_ms();
+    const Field naive = naive_step(mesh, space.quadrature(), u, delta0 / tau);
+    naive_samples.push_back(cpu_ms() - begin);
+    if ((naive.leftCols(3) - v).norm() > 1e-8 * v.norm() ||
+        (naive.rightCols(4) - nu_H).norm() > 1e-8 * nu_H.norm())
+      throw std::runtime_error("the naive step gives another solution");
+  }
+  state.counters["naive"] = median(naive_samples);
+  state.counters["ratio"] = median(naive_samples) / total;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::vector<char*> arguments(argv, argv + argc);
+  std::string tabular = "--benchmark_counters_tabular=true";
+  arguments.insert(arguments.begin() + 1, tabular.data());
+  int count = static_cast<int>(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 1;
+  for (const int subdivisions : {3, 4, 5, 6}) {
+    const int nodes = 10 * (4 << 2 * subdivisions) + 2;
+    benchmark::RegisterBenchmark(("step/nodes:" + std::to_string(nodes)).c_str(),
+                                 [=](benchmark::State& state) { step(state, subdivisions); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseManualTime()
+        ->Iterations(subdivisions < 5 ? 20 : 5);
+  }
+  benchmark::RunSpecifiedBenchmarks();
+}

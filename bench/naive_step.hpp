@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/fe/quadrature.hpp"
+#include "solver/mesh/mesh.hpp"
+
+namespace esfem {
+
+/// One step of kll19 (5.1) as one writes it first: element by element, setFromTriplets, and a complete
+/// Eigen::SimplicialLLT for each of the two systems. nu_h, H_h: columns of u (N x 4).
+/// Returns the seven solution columns, v and (nu, H).
+Field naive_step(const Mesh& mesh, const Quadrature& rule, const Field& u, double mass_factor);
+
+}  // namespace esfem

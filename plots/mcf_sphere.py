@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures 13.1 and 13.2 of Kovács, Li, Lubich (2019): mean curvature flow of a sphere, errors against tau and h.
+
+Usage: python3 plots/mcf_sphere.py results/paper/mcf_sphere.json figures
+Writes figures/kll19/fig13_1.{pdf,png} and fig13_2.{pdf,png}. The paper shows x, nu and H; v is added.
+"""
+from convergence import convergence_figure
+from script import run
+
+QUANTITIES = ("x", "v", "nu", "H")
+NORM = "nodal_H1"  # what the authors plot
+
+
+def draw(table, norm):
+    """The theory's orders are those of the degree and of the BDF method; the sphere shows one or two more in space."""
+    parameters = table.get("parameters", {})
+    degree, bdf = parameters.get("degree", 2), parameters.get("bdf", 3)
+    rows = table["rows"]
+    yield "kll19/fig13_1", convergence_figure(rows, QUANTITIES, norm, "tau", order=bdf)
+    yield "kll19/fig13_2", convergence_figure(rows, QUANTITIES, norm, "h", order=degree,
+                                              faster=(degree + 1, degree + 2))
+
+
+if __name__ == "__main__":
+    run("mcf_sphere", draw, __doc__, NORM)

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finds places for reference slopes c x^p in a log-log panel: below the data, along the data, touching nothing.
+
+Everything here is in points (1/72 inch) of the panel, origin at its lower left corner.
+"""
+from dataclasses import dataclass
+
+import numpy as np
+
+GRID = 1.5  # resolution of the map of distances
+LINE_CLEARANCE = 6.0  # from a reference line to anything else
+LABEL_CLEARANCE = 4.0  # from a label's box to anything else
+LABEL_OFFSET = (3.0, 2.0)  # from a reference line to the corner of its label
+BORDER = 4.0
+
+
+@dataclass
+class Placement:
+    """A reference line from `start` to `end`, and the lower left corner of its label."""
+    start: tuple
+    end: tuple
+    label: tuple
+
+
+def place_slopes(size, polylines, slopes, label_sizes):
+    """A Placement for each of `slopes`, or None when they do not all fit.
+
+    `size`: width and height of the panel; `polylines`: arrays (n, 2), the data; `slopes`: dy/dx in points, positive;
+    `label_sizes`: width and height of each label.
+    """
+    size = np.asarray(size, float)
+    data = np.concatenate([_samples(line) for line in polylines])
+    to_data = _distances(size, data)
+    free = np.where(_below(size, polylines), to_data, 0)
+    placements = []
+    for slope, label_size in zip(slopes, label_sizes):
+        placement = _place(size, to_data, free, slope, np.asarray(label_size, float))
+        if placement is None:
+            return None
+        placements.append(placement)
+        taken = _samples(np.array([placement.start, placement.end]))
+        box = _box_samples(np.array([placement.label]), np.asarray(label_size, float))[0]
+        free = np.minimum(free, _distances(size, np.concatenate([taken, box])))
+    return placements
+
+
+def _samples(polyline):
+    """Points at most GRID apart along a polyline."""
+    points = [polyline[:1]]
+    for a, b in zip(polyline[:-1], polyline[1:]):
+        n = max(int(np.ceil(np.hypot(*(b - a)) / GRID)), 1)
+        points.append(a + (b - a) * np.linspace(0, 1, n + 1)[1:, None])
+    return np.concatenate(points)
+
+
+def _distances(size, points):
+    """Distance to the nearest of `points` on a grid over the panel; index [row of y, column of x]."""
+    shape = np.ceil(size[::-1] / GRID).astype(int) + 1
+    j, i = np.round(points / GRID).astype(int).T
+    inside = (i >= 0) & (j >= 0) & (i < shape[0]) & (j < shape[1])
+    vertical = np.full(shape, 1e9)
+    vertical[i[inside], j[inside]] = 0
+    for row in range(1, shape[0]):
+        vertical[row] = np.minimum(vertical[row], vertical[row - 1] + 1)
+    for row in range(shape[0] - 2, -1, -1):
+        vertical[row] = np.minimum(vertical[row], vertical[row + 1] + 1)
+    columns = np.arange(shape[1])
+    dx2 = (columns[:, None] - columns)**2
+    return GRID * np.sqrt([np.min(dx2 + row**2, axis=1) for row in vertical])
+
+
+def _below(size, polylines):
+    """Where no data lie below, on the same grid: there the curves in the asymptotic range are the neighbours."""
+    x, y = (GRID * np.arange(np.ceil(length / GRID) + 1) for length in size)
+    lowest = np.min([np.interp(x, *line.T, left=np.inf, right=np.inf) for line in polylines], axis=0)
+    known = np.isfinite(lowest)
+    if not known.any():  # every line is a point between two columns of the grid
+        return y[:, None] < np.full(len(x), min(line[:, 1].min() for line in polylines))
+    return y[:, None] < np.interp(x, x[known], lowest[known])
+
+
+def _look_up(field, points):
+    """The field at `points` (..., 2); outside the panel 0, as if something were there."""
+    j, i = np.moveaxis(np.round(points / GRID).astype(int), -1, 0)
+    inside = (i >= 0) & (j >= 0) & (i < field.shape[0]) & (j < field.shape[1])
+    return np.where(inside, field[np.clip(i, 0, field.shape[0] - 1), np.clip(j, 0, field.shape[1] - 1)], 0.0)
+
+
+def _box_samples(corners, size):
+    """Points over boxes with the lower left corners (n, 2): (n, m, 2), the corners themselves included."""
+    u, v = np.meshgrid(np.linspace(0, size[0], 8), np.linspace(0, size[1], 5))
+    return corners[:, None, :] + np.stack([u.ravel(), v.ravel()], axis=-1)
+
+
+def _place(size, to_data, free, slope, label_size):
+    """The best place for one line: as long as possible, its farthest point as near to the data as possible."""
+    longest = min(0.4 * size[0], 0.45 * size[1] / slope)
+    best = None
+    for width in longest * np.array([1, 0.8, 0.6, 0.45]):
+        extent = np.array([width, slope * width])
+        x, y = np.meshgrid(*(np.arange(BORDER, s - e - BORDER, 2 * GRID) for s, e in zip(size, extent)))
+        starts = np.stack([x.ravel(), y.ravel()], axis=-1)
+        along = starts[:, None, :] + extent * np.linspace(0, 1, 25)[:, None]
+        starts = starts[np.min(_look_up(free, along), axis=1) >= LINE_CLEARANCE]
+        if not len(starts):
+            continue
+        along = starts[:, None, :] + extent * np.linspace(0, 1, 25)[:, None]
+        length = np.hypot(*extent)
+        costs = np.max(_look_up(to_data, along), axis=1) + 0.5 * (np.hypot(longest, slope * longest) - length)
+        for fraction in (0.5, 0.35, 0.65, 0.2, 0.8):
+            foot = starts + fraction * extent
+            for side in (1, -1):  # to the right below the line, to the left above it
+                corner = foot + side * np.array([1, -1]) * LABEL_OFFSET
+                corner = corner - (np.array([0, label_size[1]]) if side > 0 else np.array([label_size[0], 0]))
+                total = costs + 4 * abs(fraction - 0.5)  # the label near the middle
+                boxes = _box_samples(corner, label_size)
+                inside = np.all((corner >= BORDER) & (corner + label_size <= size - BORDER), axis=1)
+                clear = inside & (np.min(_look_up(free, boxes), axis=1) >= LABEL_CLEARANCE)
+                if not clear.any():
+                    continue
+                k = np.argmin(np.where(clear, total, np.inf))
+                if best is None or total[k] < best[0]:
+                    best = (total[k], Placement(tuple(starts[k]), tuple(starts[k] + extent), tuple(corner[k])))
+    return best and best[1]

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one style of all figures. Importing it selects matplotlib's Agg backend (no display), sets fonts and lines.
+
+Sizes are print sizes: a figure is WIDTH wide and is included in a page without scaling, so 8 pt here is 8 pt on paper.
+"""
+import math
+import os
+
+import matplotlib
+
+matplotlib.use("Agg")
+from matplotlib import ticker  # noqa: E402  (the backend comes first)
+
+CM = 1 / 2.54
+WIDTH = 17 * CM  # text width of a page, in inches
+
+# Shapes that stay apart at 4 pt; neighbours in the list differ most.
+MARKERS = ("o", "s", "^", "D", "v", "*", "<", "p", ">", "x")
+
+matplotlib.rcParams.update({
+    "font.family": "STIXGeneral",
+    "mathtext.fontset": "stix",
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.labelsize": 9,
+    "legend.fontsize": 8.5,
+    "xtick.labelsize": 8,
+    "ytick.labelsize": 8,
+    "axes.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "grid.color": "0.88",
+    "grid.linewidth": 0.4,
+    "lines.linewidth": 0.9,
+    "lines.markersize": 4,
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "legend.frameon": False,
+    "pdf.fonttype": 42,  # TrueType, embedded: publishers refuse Type 3
+    "savefig.dpi": 200,
+})
+
+
+def line_styles(count):
+    """Keyword arguments of `plot` for `count` lines in an order that means something (coarse to fine).
+
+    Viridis without its pale end: lightness is monotone, so the order survives greyscale and colour blindness; the
+    markers tell the lines apart. Later markers are smaller, so that all of them show where lines coincide.
+    """
+    colours = matplotlib.colormaps["viridis"]
+    styles = []
+    for i in range(count):
+        t = i / max(count - 1, 1)
+        marker = MARKERS[i % len(MARKERS)]
+        size = (5.5 - 2 * t) * (1.4 if marker == "*" else 1)  # a star of the same size looks smaller
+        styles.append({"color": colours(0.8 * t), "marker": marker, "markersize": size, "markerfacecolor": "white",
+                       "markeredgewidth": 0.9})
+    return styles
+
+
+def log_ticks(axis, low, high, length):
+    """Labels a horizontal logarithmic axis over [low, high], `length` points long, with round numbers.
+
+    When these do not fit or have too many digits, matplotlib's powers of ten stay.
+    """
+    for mantissas in ((1, 1.5, 2, 3, 4, 5, 7), (1, 2, 5), (1, 3)):
+        ticks = [m * 10.0**d for d in range(-4, 5) for m in mantissas if low <= m * 10.0**d <= high]
+        if low < 1e-4 or high > 1e4 or len(ticks) < 2:
+            continue
+        labels = [(length * math.log(tick / low) / math.log(high / low), 2.1 * len(f"{tick:g}") + 2) for tick in ticks]
+        if all(right - left >= half + other for (left, half), (right, other) in zip(labels, labels[1:])):
+            axis.set_major_locator(ticker.FixedLocator(ticks))
+            axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_locator(ticker.NullLocator())
+            return
+
+
+def save(figure, stem):
+    """Writes stem.pdf and stem.png, each whole or not at all; equal figures give equal bytes. Returns both names."""
+    folder, name = os.path.split(os.path.abspath(stem))
+    os.makedirs(folder, exist_ok=True)
+    written = []
+    for kind, metadata in (("pdf", {"CreationDate": None}), ("png", {})):
+        target = f"{stem}.{kind}"
+        unfinished = os.path.join(folder, f".{name}.{kind}.{os.getpid()}.tmp")
+        try:
+            figure.savefig(unfinished, format=kind, metadata=metadata)
+            os.replace(unfinished, target)
+        finally:
+            if os.path.exists(unfinished):
+                os.remove(unfinished)
+        written.append(target)
+    return written

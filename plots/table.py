@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads tables of experiments (schema esfem-table/1)."""
+import json
+import math
+
+SCHEMA = "esfem-table/1"
+
+
+class TableError(Exception):
+    """A table cannot be drawn; the message says what was found where, and what was expected."""
+
+
+def read_table(path, experiment=None):
+    """The table in `path` as a dictionary, checked as far as figures need it. Raises TableError.
+
+    `experiment`: the stem that the table must come from, if it matters.
+    """
+    try:
+        with open(path, encoding="utf-8") as file:
+            table = json.load(file)
+    except OSError as error:
+        raise TableError(error.strerror) from error
+    except ValueError as error:
+        raise TableError(f"not JSON: {error}") from error
+    schema = table.get("schema") if isinstance(table, dict) else None
+    if schema != SCHEMA:
+        raise TableError(f'schema is {json.dumps(schema)}, expected "{SCHEMA}"')
+    if experiment and table.get("experiment") != experiment:
+        raise TableError(f'experiment is {json.dumps(table.get("experiment"))}, expected "{experiment}"')
+    if not isinstance(table.get("parameters", {}), dict):
+        raise TableError("parameters is not an object")
+    rows = table.get("rows")
+    if not isinstance(rows, list) or not rows:
+        raise TableError("no rows")
+    for i, row in enumerate(rows):
+        _check_row(row, f"rows[{i}]")
+    if not any(succeeded(row) for row in rows):
+        raise TableError(f"none of {len(rows)} runs succeeded; the first: {rows[0]['status']}")
+    return table
+
+
+def _check_row(row, place):
+    if not isinstance(row, dict) or not isinstance(row.get("status"), str):
+        raise TableError(f"{place}: expected an object with a status")
+    if not succeeded(row):
+        return  # a run that failed early may not even have a mesh
+    for key in ("h", "nodes", "tau"):
+        value = row.get(key)
+        if not isinstance(value, (int, float)) or not (0 < value < math.inf):
+            raise TableError(f"{place}: {key} is {json.dumps(value)}, expected a positive number")
+    errors = row.get("errors")
+    if not isinstance(errors, dict) or not all(isinstance(norms, dict) for norms in errors.values()):
+        raise TableError(f"{place}: errors is not an object {{quantity: {{norm: value}}}}")
+
+
+def succeeded(row):
+    """Whether the run of this row finished."""
+    return row["status"] == "ok"

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/analysis/errors.hpp"
+
+#include <cmath>
+
+#include "solver/fe/lagrange.hpp"
+
+namespace esfem {
+
+SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, const Field& e) {
+  Field Me, Ae;
+  M.multiply(e, Me);
+  A.multiply(e, Ae);
+  return {e.cwiseProduct(Me).colwise().sum(), e.cwiseProduct(Ae).colwise().sum()};
+}
+
+SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
+                           double t, const Field& w) {
+  const int components = exact.components();
+  const Quadrature& rule = space.quadrature();
+  const ShapeTable shapes = shape_functions(space.degree(), rule.points);
+  const int nodes = static_cast<int>(shapes.value.cols());
+  const Surface surface = exact.surface(t);
+
+  // The nodes' position and components side by side, so that one product interpolates them all.
+  Eigen::MatrixXd local(nodes, 3 + components), value, dxi, deta;
+  Eigen::VectorXd exact_value(components);
+  Eigen::MatrixXd exact_gradient(3, components), gradient(3, components);
+  SquaredNorms norms{Eigen::VectorXd::Zero(components), Eigen::VectorXd::Zero(components)};
+  for (int element = 0; element < space.element_count(); ++element) {
+    for (int i = 0; i < nodes; ++i) {
+      const int j = space.elements()(element, i);
+      local.row(i) << x_star.row(j), w.row(j);
+    }
+    value.noalias() = shapes.value * local;
+    dxi.noalias() = shapes.dxi * local;
+    deta.noalias() = shapes.deta * local;
+    for (int q = 0; q < rule.weights.size(); ++q) {
+      const Vec3 x = value.row(q).head<3>();
+      const Vec3 y = surface.closest_point(x);
+      const Surface::Shape shape = surface.shape_at(y);
+      const double s = shape.normal.dot(x - y);
+
+      Eigen::Matrix<double, 3, 2> tangents;
+      tangents << dxi.row(q).head<3>().transpose(), deta.row(q).head<3>().transpose();
+      tangents -= shape.normal * (shape.normal.transpose() * tangents);
+      tangents = (Mat3::Identity() + s * shape.weingarten).inverse() * tangents;
+      const Eigen::Matrix2d metric = tangents.transpose() * tangents;
+      const double dA = rule.weights[q] * std::sqrt(metric.determinant());
+
+      exact.fields(t, y, shape, exact_value, exact_gradient);
+      const Eigen::Matrix<double, 3, 2> dual = tangents * metric.inverse();
+      gradient.noalias() = dual.col(0) * dxi.row(q).tail(components);
+      gradient.noalias() += dual.col(1) * deta.row(q).tail(components);
+      norms.L2 += dA * (value.row(q).tail(components).transpose() - exact_value).cwiseAbs2();
+      norms.H1_semi += dA * (gradient - exact_gradient).colwise().squaredNorm().transpose();
+    }
+  }
+  return norms;
+}
+
+ErrorRecorder::ErrorRecorder(const SurfaceSpace& space, const ExactEvolution& exact, Field x0)
+    : space_(space), exact_(exact), x0_(std::move(x0)), M_(space.matrix()), A_(space.matrix()) {}
+
+void ErrorRecorder::record(double t, const Field& w) {
+  const Field x_star = exact_.trajectories(x0_, t);
+  space_.assemble(x_star, M_, A_);
+  series_["t"].push_back(t);
+  add("nodal", nodal_norms(M_, A_, w - exact_.nodal_values(x_star, t)));
+  add("lifted", lifted_errors(space_, x_star, exact_, t, w));
+}
+
+void ErrorRecorder::add(const std::string& kind, const SquaredNorms& norms) {
+  int column = 0;
+  for (const auto& [quantity, components] : exact_.quantities) {
+    // Round-off can make a vanishing eᵀAe negative.
+    const double L2 = std::max(0.0, norms.L2.segment(column, components).sum());
+    const double H1_semi = std::max(0.0, norms.H1_semi.segment(column, components).sum());
+    const std::pair<const char*, double> values[] = {
+        {"_L2", std::sqrt(L2)}, {"_H1", std::sqrt(L2 + H1_semi)}, {"_H1_semi", std::sqrt(H1_semi)}};
+    for (const auto& [norm, error] : values) {
+      double& maximum = maxima_[quantity][kind + norm];
+      maximum = std::max(maximum, error);
+      series_[quantity + "_" + kind + norm].push_back(error);
+    }
+    column += components;
+  }
+}
+
+}  // namespace esfem

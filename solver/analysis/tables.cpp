@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The results table as CSV and LaTeX.
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "solver/analysis/table.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+/// (quantity, norm) of all rows.
+std::set<std::pair<std::string, std::string>> error_names(const Table& table) {
+  std::set<std::pair<std::string, std::string>> names;
+  for (const Row& row : table.rows)
+    for (const auto& [quantity, norms] : row.errors)
+      for (const auto& [norm, value] : norms) names.insert({quantity, norm});
+  return names;
+}
+
+/// The error, or NaN when the row failed or does not have it.
+double error_of(const Row& row, const std::string& quantity, const std::string& norm) {
+  const auto norms = row.errors.find(quantity);
+  if (row.status != "ok" || norms == row.errors.end() || norms->second.count(norm) == 0) return std::nan("");
+  return norms->second.at(norm);
+}
+
+// --- CSV (RFC 4180) ---
+
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_number(double value) {
+  return std::isfinite(value) ? format("%.17g", value) : "";
+}
+
+/// Keys of Row::more whose values fit into a cell.
+std::set<std::string> further_keys(const Table& table) {
+  std::set<std::string> keys;
+  for (const Row& row : table.rows)
+    for (const auto& item : row.more.items())
+      if (item.value().is_primitive()) keys.insert(item.key());
+  return keys;
+}
+
+std::string csv_further(const Row& row, const std::string& key) {
+  const auto value = row.more.find(key);
+  if (value == row.more.end() || !value->is_primitive() || value->is_null()) return "";
+  return csv_text(value->is_string() ? value->get<std::string>() : value->dump());
+}
+
+// --- LaTeX ---
+
+/// Which of h and tau changes within a block of a table.
+enum class Direction { tau, h };
+
+double variable(const Row& row, Direction direction) {
+  return direction == Direction::tau ? row.tau : row.h;
+}
+
+std::string latex_text(const std::string& text) {
+  std::string escaped;
+  for (char c : text) {
+    if (c == '\\')
+      escaped += "\\textbackslash{}";
+    else if (c == '~' || c == '^')
+      escaped += std::string("\\") + c + "{}";
+    else
+      escaped += std::string(std::string("#$%&_{}").find(c) != std::string::npos ? "\\" : "") + c;
+  }
+  return escaped;
+}
+
+std::string latex_number(double value, const char* pattern) {
+  if (!std::isfinite(value)) return "--";
+  const std::string text = format(pattern, value);
+  const std::size_t e = text.find('e');
+  if (e == std::string::npos) return "$" + text + "$";
+  return format("$%s\\cdot10^{%d}$", text.substr(0, e).c_str(), std::stoi(text.substr(e + 1)));
+}
+
+std::string latex_quantity(const std::string& quantity) {
+  if (quantity == "nu") return "$\\nu$";
+  if (quantity == "kappa") return "$\\kappa$";
+  return quantity.size() == 1 ? "$" + quantity + "$" : latex_text(quantity);
+}
+
+/// Rows that differ in the variable of the direction only, largest first.
+using Block = std::vector<const Row*>;
+
+std::vector<Block> blocks(const Table& table, Direction direction) {
+  const Direction other = direction == Direction::tau ? Direction::h : Direction::tau;
+  std::vector<Block> result;
+  for (const Row& row : table.rows) {
+    const auto same = std::find_if(result.begin(), result.end(), [&](const Block& block) {
+      const Row& first = *block[0];
+      const bool same_mesh =
+          direction == Direction::h || (first.level == row.level && first.nodes == row.nodes);
+      return same_mesh && variable(first, other) == variable(row, other) && variant(first) == variant(row);
+    });
+    if (same == result.end())
+      result.push_back({&row});
+    else
+      same->push_back(&row);
+  }
+  const auto descending = [](Direction d) {
+    return [d](const Row* a, const Row* b) { return variable(*a, d) > variable(*b, d); };
+  };
+  for (Block& block : result) std::stable_sort(block.begin(), block.end(), descending(direction));
+  std::stable_sort(result.begin(), result.end(), [&](const Block& a, const Block& b) {
+    return variant(*a[0]) != variant(*b[0]) ? variant(*a[0]) < variant(*b[0]) : descending(other)(a[0], b[0]);
+  });
+  return result;
+}
+
+/// Experimental order of convergence between neighbouring rows, from the measured h or tau; NaN where there
+/// is none.
+double eoc(const Row& previous, const Row& row, Direction direction, const std::string& quantity,
+           const std::string& norm) {
+  const double ratio = variable(previous, direction) / variable(row, direction);
+  return std::log(error_of(previous, quantity, norm) / error_of(row, quantity, norm)) / std::log(ratio);
+}
+
+std::string block_title(const Row& row, Direction direction) {
+  std::string title = direction == Direction::tau ? format("$h = %.4g$, $N = %d$", row.h, row.nodes)
+                                                  : "$\\tau = $ " + latex_number(row.tau, "%.4g");
+  if (!variant(row).empty()) title += ", " + latex_text(variant(row));
+  return title;
+}
+
+std::string row_text(const Row& row, const Row* previous, Direction direction,
+                     const std::vector<std::string>& quantities, const std::string& norm) {
+  std::string text = latex_number(variable(row, direction), "%.4g");
+  if (row.status != "ok")
+    return text + format(" & \\multicolumn{%zu}{l}{", 2 * quantities.size()) + latex_text(row.status) +
+           "} \\\\\n";
+  for (const std::string& quantity : quantities) {
+    text += " & " + latex_number(error_of(row, quantity, norm), "%.3e");
+    const double order = previous ? eoc(*previous, row, direction, quantity, norm) : std::nan("");
+    text += " & " + latex_number(order, "%.2f");
+  }
+  return text + " \\\\\n";
+}
+
+std::string fit_text(const Table& table, Direction direction, const std::vector<std::string>& quantities,
+                     const std::string& norm) {
+  const std::string name = direction == Direction::tau ? "tau" : "h";
+  std::string text = "fit";
+  for (const std::string& quantity : quantities) {
+    double order = std::nan("");
+    for (const Fit& fit : table.fits)
+      if (fit.quantity == quantity && fit.norm == norm && fit.variable == name) order = fit.order;
+    text += " & & " + latex_number(order, "%.2f");
+  }
+  return text + " \\\\\n";
+}
+
+std::string latex_table(const Table& table, Direction direction, const std::vector<std::string>& quantities,
+                        const std::string& norm) {
+  const bool in_tau = direction == Direction::tau;
+  const std::size_t columns = 1 + 2 * quantities.size();
+  std::string text = "\\begin{table}\n\\centering\n";
+  text += "\\caption{" + latex_text(table.experiment) + ": " + latex_text(norm) + " errors and orders in " +
+          (in_tau ? "$\\tau$" : "$h$") + ".}\n";
+  text += "\\begin{tabular}{l" + [&] {
+    std::string alignment;
+    for (std::size_t i = 0; i < quantities.size(); ++i) alignment += "rr";
+    return alignment;
+  }() + "}\n\\toprule\n";
+  text += in_tau ? "$\\tau$" : "$h$";
+  for (const std::string& quantity : quantities) text += " & " + latex_quantity(quantity) + " & EOC";
+  text += " \\\\\n";
+  for (const Block& block : blocks(table, direction)) {
+    text +=
+        format("\\midrule\n\\multicolumn{%zu}{l}{", columns) + block_title(*block[0], direction) + "} \\\\\n";
+    const Row* previous = nullptr;
+    for (const Row* row : block) {
+      text += row_text(*row, previous, direction, quantities, norm);
+      previous = row;
+    }
+  }
+  text += "\\midrule\n" + fit_text(table, direction, quantities, norm);
+  return text + "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
+}
+
+}  // namespace
+
+std::string to_csv(const Table& table) {
+  const auto names = error_names(table);
+  const std::set<std::string> further = further_keys(table);
+  std::string text = "cell,level,h,nodes,tau,steps,status,seconds,peak_memory_mb";
+  for (const std::string& key : further) text += "," + csv_text(key);
+  for (const auto& [quantity, norm] : names) text += "," + csv_text(quantity + "_" + norm);
+  text += "\n";
+  for (const Row& row : table.rows) {
+    text += csv_text(row.cell) + format(",%d,", row.level) + csv_number(row.h) + format(",%d,", row.nodes) +
+            csv_number(row.tau) + format(",%d,", row.steps) + csv_text(row.status) + "," +
+            csv_number(row.seconds) + "," + csv_number(row.peak_memory_mb);
+    for (const std::string& key : further) text += "," + csv_further(row, key);
+    for (const auto& [quantity, norm] : names) text += "," + csv_number(error_of(row, quantity, norm));
+    text += "\n";
+  }
+  return text;
+}
+
+std::string to_latex(const Table& table) {
+  std::string text = "% " + table.experiment + " (" + table.paper + "); needs \\usepackage{booktabs}\n";
+  std::set<std::string> norms;
+  for (const auto& [quantity, norm] : error_names(table)) norms.insert(norm);
+  for (const std::string& norm : norms) {
+    std::vector<std::string> quantities;
+    for (const auto& name : error_names(table))
+      if (name.second == norm) quantities.push_back(name.first);
+    for (Direction direction : {Direction::tau, Direction::h})
+      text += "\n" + latex_table(table, direction, quantities, norm);
+  }
+  return text;
+}
+
+}  // namespace esfem

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "solver/assembly/pack.hpp"
+#include "solver/fe/quadrature.hpp"
+#include "solver/types.hpp"
+
+namespace esfem {
+
+constexpr int max_nodes_per_element = 15;
+
+/// Eight elements that are treated as one, at given positions of the nodes.
+struct Batch {
+  int number;
+  const int* node;                   ///< node[8 a + lane] is local node a of the lane's element
+  Pack one;                          ///< 1, and 0 in lanes that only fill the last batch up
+  Pack x[max_nodes_per_element][3];  ///< positions of the nodes
+  Pack direction[3];                 ///< unit normal of the corner triangle
+  Pack size;                         ///< square of the longest edge between corners
+};
+
+/// The first order geometry of the element map at one quadrature point of a batch.
+struct BatchPoint {
+  Pack tangent_xi[3], tangent_eta[3];
+  Pack normal[3];  ///< t_xi x t_eta; its length is the Jacobian
+  Pack jacobian, inverse_jacobian;
+};
+
+/// Eight truth values, -1 or 0.
+using Lanes = long __attribute__((vector_size(64)));
+
+/// The elements of a mesh in batches of eight, with the shape functions at the points of a quadrature rule.
+/// The last batch is filled up with repetitions of the last element, which count zero times.
+class ElementBatches {
+ public:
+  /// One shape function at one quadrature point.
+  struct Shape {
+    double value, dxi, deta;
+  };
+
+  ElementBatches(const Connectivity& elements, int degree, const Quadrature& rule);
+
+  int count() const { return (element_count_ + pack_size - 1) / pack_size; }
+  int nodes() const { return nodes_; }
+  int points() const { return static_cast<int>(weights_.size()); }
+  double weight(int point) const { return weights_[point]; }
+  /// The `nodes()` shape functions at a point.
+  const Shape* shapes(int point) const { return &shapes_[point * nodes_]; }
+  /// The lane's element; a repetition has the number of the element that it repeats.
+  int element(int batch, int lane) const { return std::min(batch * pack_size + lane, element_count_ - 1); }
+
+  /// Collects the positions of a batch's nodes.
+  void load(int number, const Field& x, Batch& batch) const;
+
+  /// out[a][c] = value of component c < components at local node a.
+  template <int width>
+  void gather(const Batch& batch, const Field& u, int components, Pack (*out)[width]) const {
+    for (int a = 0; a < nodes_; ++a)
+      for (int c = 0; c < components; ++c)
+        for (int lane = 0; lane < pack_size; ++lane)
+          out[a][c][lane] = u.data()[c * u.rows() + batch.node[pack_size * a + lane]];
+  }
+
+  /// Geometry at a quadrature point. Lanes whose Jacobian is finite and positive relative to the element's
+  /// size are true in the result.
+  Lanes evaluate(const Batch& batch, int point, BatchPoint& out) const {
+    for (int i = 0; i < 3; ++i) out.tangent_xi[i] = out.tangent_eta[i] = Pack{};
+    const Shape* shape = shapes(point);
+    for (int a = 0; a < nodes_; ++a) {
+      for (int i = 0; i < 3; ++i) {
+        out.tangent_xi[i] += shape[a].dxi * batch.x[a][i];
+        out.tangent_eta[i] += shape[a].deta * batch.x[a][i];
+      }
+    }
+    cross(out.tangent_xi, out.tangent_eta, out.normal);
+    const Pack squared = dot(out.normal, out.normal);
+    out.inverse_jacobian = inverse_sqrt(squared);
+    out.jacobian = squared * out.inverse_jacobian;
+    const Pack upright = dot(out.normal, batch.direction);
+    return (upright > smallest_jacobian * batch.size) & (upright < largest_jacobian * batch.size);
+  }
+
+  /// Throws NumericsError for the first lane that is false.
+  void require_regular(const Lanes& regular, const Batch& batch) const {
+    bool all = true;
+    for (int lane = 0; lane < pack_size; ++lane) all &= regular[lane] != 0;
+    if (!all) report_degenerate(batch);
+  }
+
+ private:
+  /// Bounds of the Jacobian (twice the area for a flat triangle) relative to the square of the longest edge.
+  static constexpr double smallest_jacobian = 1e-10, largest_jacobian = 1e10;
+
+  [[noreturn]] void report_degenerate(const Batch& batch) const;
+
+  int element_count_, nodes_;
+  std::vector<int> node_;  ///< batches x nodes x lanes
+  std::vector<double> weights_;
+  std::vector<Shape> shapes_;  ///< points x nodes
+};
+
+}  // namespace esfem

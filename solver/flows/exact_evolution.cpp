@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/exact_evolution.hpp"
+
+#include <cmath>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+int ExactEvolution::components() const {
+  int sum = 0;
+  for (const Quantity& quantity : quantities) sum += quantity.components;
+  return sum;
+}
+
+int ExactEvolution::column(const std::string& name) const {
+  int column = 0;
+  for (const Quantity& quantity : quantities) {
+    if (quantity.name == name) return column;
+    column += quantity.components;
+  }
+  throw InputError("the exact solution has no quantity " + name);
+}
+
+Field ExactEvolution::nodal_values(const Field& x, double t) const {
+  const Surface now = surface(t);
+  Field values(x.rows(), components());
+  Eigen::VectorXd value(components());
+  Eigen::MatrixXd gradient(3, components());
+  for (int j = 0; j < x.rows(); ++j) {
+    const Vec3 y = x.row(j);
+    fields(t, y, now.shape_at(y), value, gradient);
+    values.row(j) = value;
+  }
+  return values;
+}
+
+ExactEvolution shrinking_sphere(double initial_radius) {
+  const auto radius = [initial_radius](double t) {
+    const double squared = initial_radius * initial_radius - 4 * t;
+    if (squared <= 0) {
+      throw InputError(format("the sphere of radius %g has shrunk to a point at t = %g; t = %g was asked for",
+                              initial_radius, initial_radius * initial_radius / 4, t));
+    }
+    return std::sqrt(squared);
+  };
+  ExactEvolution exact;
+  exact.quantities = {{"x", 3}, {"v", 3}, {"nu", 3}, {"H", 1}};
+  exact.surface = [radius](double t) { return sphere(radius(t)); };
+  exact.trajectories = [radius, initial_radius](const Field& x0, double t) -> Field {
+    return x0 * (radius(t) / initial_radius);
+  };
+  exact.fields = [radius](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
+                          Eigen::MatrixXd& gradient) {
+    const double H = 2 / radius(t);
+    value << y, -H * shape.normal, shape.normal, H;
+    // grad id = P, grad nu = A, and H is constant on the sphere.
+    const Mat3 projection = Mat3::Identity() - shape.normal * shape.normal.transpose();
+    gradient << projection, -H * shape.weingarten, shape.weingarten, Vec3::Zero();
+  };
+  return exact;
+}
+
+}  // namespace esfem

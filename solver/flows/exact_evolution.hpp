@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "solver/surfaces/surface.hpp"
+#include "solver/types.hpp"
+
+namespace esfem {
+
+/// A known exact solution of a flow: the surface, the trajectories of its material points, and the solution's
+/// fields.
+struct ExactEvolution {
+  /// A quantity of the error tables and its number of components.
+  struct Quantity {
+    std::string name;
+    int components;
+  };
+  std::vector<Quantity> quantities;  ///< in the order of the columns of `values`
+  std::function<Surface(double t)> surface;
+  /// Positions at time t of the points that start at x0 (N x 3).
+  std::function<Field(const Field& x0, double t)> trajectories;
+  /// At a point y of the surface at time t: the components' values (all quantities side by side) and
+  /// tangential gradients (3 x components, columns are gradients).
+  std::function<void(double t, const Vec3& y, const Surface::Shape&, Eigen::VectorXd& value,
+                     Eigen::MatrixXd& gradient)>
+      fields;
+
+  int components() const;
+  /// The first column of a quantity.
+  int column(const std::string& quantity) const;
+  /// Values of all components in points x of the surface at time t: N x components.
+  Field nodal_values(const Field& x, double t) const;
+};
+
+/// kll19 §13.1: a sphere of radius R_0 under mean curvature flow, R(t) = sqrt(R_0² - 4t) for t < R_0²/4.
+/// Quantities x, v = -H nu, nu, H.
+ExactEvolution shrinking_sphere(double initial_radius);
+
+}  // namespace esfem

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/mean_curvature_flow.hpp"
+
+namespace esfem {
+
+namespace {
+
+/// -H nu in the nodes.
+template <class U>
+Field interpolated_velocity(const U& u) {
+  return (-u.col(3)).asDiagonal() * u.leftCols(3);
+}
+
+/// The loads g (columns 0-2) and f (columns 3-6) of §3.3, with the stabilising term of §14 in f_1.
+struct MeanCurvatureLoads {
+  double alpha;
+
+  void operator()(const PointData<4>& p, Integrand<7, 3>& load) const {
+    const Pack H = p.u[3];
+    Pack weingarten_squared = {};  // alpha_h² = |grad nu_h|²
+    for (int l = 0; l < 3; ++l) {
+      for (int i = 0; i < 3; ++i) weingarten_squared += p.grad[l][i] * p.grad[l][i];
+    }
+    for (int l = 0; l < 3; ++l) {
+      load.value[l] = -H * p.u[l];
+      for (int i = 0; i < 3; ++i) load.flux[l][i] = -(H * p.grad[l][i] + p.u[l] * p.grad[3][i]);
+      load.value[3 + l] = weingarten_squared * p.u[l] - alpha * (p.u[l] - p.normal[l]);
+    }
+    load.value[6] = weingarten_squared * H;
+  }
+};
+
+}  // namespace
+
+MeanCurvatureFlow::MeanCurvatureFlow(const SurfaceSpace& space, Variant variant)
+    : space_(space), variant_(variant), M_(space.matrix()), A_(space.matrix()), cholesky_(space.pattern()) {}
+
+void MeanCurvatureFlow::velocity(Field& v) {
+  if (variant_.velocity == Variant::interpolation) {
+    v = interpolated_velocity(u_tilde_);
+    return;
+  }
+  v = loads_.leftCols(3);
+  cholesky_.factorise(1.0, M_, 1.0, A_);
+  cholesky_.solve(v);
+}
+
+void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, State& next) {
+  const double delta_0 = history.delta(q)[0];
+
+  // (5.2)
+  history.extrapolate(q, &State::x, x_tilde_);
+  history.extrapolate(q, &State::u, u_tilde_);
+
+  space_.assemble(x_tilde_, M_, A_);
+  space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, MeanCurvatureLoads{variant_.stabilise}, loads_);
+
+  // (5.1), first line: K(x̃) v = g(x̃, ũ)
+  velocity(next.v);
+
+  // (5.1), second line: (delta_0/tau M(x̃) + A(x̃)) u = f(x̃, ũ) - M(x̃) 1/tau sum_{j>=1} delta_j u^{n-j}
+  history.bdf_sum(q, &State::u, sum_);
+  M_.multiply(sum_, M_sum_);
+  next.u = loads_.rightCols(4) - M_sum_ / tau;
+  cholesky_.factorise(delta_0 / tau, M_, 1.0, A_);
+  cholesky_.solve(next.u);
+  if (variant_.normalise) next.u.leftCols(3).rowwise().normalize();
+
+  // (5.1), third line: delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
+  history.bdf_sum(q, &State::x, sum_);
+  next.x = (tau * next.v - sum_) / delta_0;
+}
+
+MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu, const Field& H) {
+  MeanCurvatureFlow::State state;
+  state.t = t;
+  state.u.resize(x.rows(), 4);
+  state.u << nu, H;
+  state.v = interpolated_velocity(state.u);
+  state.x = std::move(x);
+  return state;
+}
+
+MeanCurvatureFlow::State exact_mean_curvature_state(const ExactEvolution& exact, const Field& x0, double t) {
+  Field x = exact.trajectories(x0, t);
+  const Field values = exact.nodal_values(x, t);
+  return mean_curvature_state(t, std::move(x), values.middleCols(exact.column("nu"), 3),
+                              values.col(exact.column("H")));
+}
+
+MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const Field& x) {
+  Field nu(x.rows(), 3), H(x.rows(), 1);
+  for (int j = 0; j < x.rows(); ++j) {
+    const Surface::Shape shape = surface.shape_at(x.row(j));
+    nu.row(j) = shape.normal;
+    H(j, 0) = shape.weingarten.trace();
+  }
+  return mean_curvature_state(0, x, nu, H);
+}
+
+MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space, const Field& x) {
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(x, M, A);
+  SparseCholesky cholesky(space.pattern());
+  cholesky.factorise(1.0, M, 0.0, A);
+  const auto normals = [](const PointData<3>& p, Integrand<3, 0>& load) {
+    for (int l = 0; l < 3; ++l) load.value[l] = p.normal[l];
+  };
+  Field nu, H;
+  space.assemble_load<3, 3, 0>(x, x, normals, nu);
+  cholesky.solve(nu);
+  nu.rowwise().normalize();
+  const auto divergence = [](const PointData<3>& p, Integrand<1, 0>& load) {
+    load.value[0] = p.grad[0][0] + p.grad[1][1] + p.grad[2][2];
+  };
+  space.assemble_load<3, 1, 0>(x, nu, divergence, H);
+  cholesky.solve(H);
+  return mean_curvature_state(0, x, nu, H);
+}
+
+Field table_columns(const MeanCurvatureFlow::State& state) {
+  Field columns(state.x.rows(), 10);
+  columns << state.x, state.v, state.u;
+  return columns;
+}
+
+}  // namespace esfem

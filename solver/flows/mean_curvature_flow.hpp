@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/assembly/surface_space.hpp"
+#include "solver/flows/exact_evolution.hpp"
+#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/time/history.hpp"
+
+namespace esfem {
+
+/// Mean curvature flow by evolution equations for normal and mean curvature: kll19 (5.1), linearly implicit
+/// BDF.
+///
+/// Unknown nodal vectors: positions x, velocity v = -H nu, and u = (nu, H).
+class MeanCurvatureFlow {
+ public:
+  struct Variant {
+    /// ritz: v_h is the Ritz projection (3.1a) of -H_h nu_h; interpolation: its nodal interpolation (kll21
+    /// Remark 3.1).
+    enum Velocity { ritz, interpolation } velocity = ritz;
+    bool normalise = false;  ///< rescale nu_h to unit length at every node after each step (§13.2)
+    double stabilise = 0;    ///< alpha >= 0 of the term -alpha int (nu_h - nu_Gamma_h) . phi of §14; 1/time
+  };
+
+  struct State {
+    double t = 0;
+    Field x;  ///< N x 3
+    Field v;  ///< N x 3
+    Field u;  ///< N x 4: nu_1, nu_2, nu_3, H
+    static constexpr NamedField<State> fields[] = {{"x", &State::x}, {"v", &State::v}, {"u", &State::u}};
+  };
+
+  /// The space gives elements, degree and quadrature; it must outlive the flow.
+  MeanCurvatureFlow(const SurfaceSpace& space, Variant variant);
+
+  /// One step of (5.1) with BDF of order q: fills next.x, next.v and next.u.
+  void step(const History<State>& history, int q, double tau, State& next);
+
+ private:
+  void velocity(Field& v);
+
+  const SurfaceSpace& space_;
+  Variant variant_;
+  SymmetricMatrix M_, A_;
+  SparseCholesky cholesky_;
+  Field x_tilde_, u_tilde_, loads_, sum_, M_sum_;
+};
+
+/// The state with given positions, normals (N x 3) and mean curvatures (N x 1), and v = -H nu in the nodes.
+MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu, const Field& H);
+
+/// The state whose nodal values are an exact solution's with quantities nu and H, in the nodes that start at
+/// x0.
+MeanCurvatureFlow::State exact_mean_curvature_state(const ExactEvolution& exact, const Field& x0, double t);
+
+/// The state whose nodal values are the normals and mean curvatures of a surface that its nodes x lie on; t =
+/// 0.
+MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const Field& x);
+
+/// A state for a surface of which only the nodes x are known; t = 0. nu is the L2 projection of the normals
+/// of Gamma_h[x], rescaled to unit length in the nodes, and H the L2 projection of the divergence of this nu.
+MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space, const Field& x);
+
+/// x, v, nu, H side by side (N x 10), the columns of the error tables.
+Field table_columns(const MeanCurvatureFlow::State& state);
+
+}  // namespace esfem

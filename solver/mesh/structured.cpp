@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <utility>
+
+#include "solver/error.hpp"
+#include "solver/mesh/mesh.hpp"
+
+namespace esfem {
+
+namespace {
+
+/// Every triangle cut into four through its edges' midpoints. The four stay together in the element order.
+Mesh subdivide(const Mesh& mesh) {
+  const Mesh quadratic = lagrange_mesh(mesh, 2);
+  Mesh result;
+  result.nodes = quadratic.nodes;
+  result.elements.resize(4 * mesh.elements.rows(), 3);
+  const int child[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+  for (int e = 0; e < mesh.elements.rows(); ++e)
+    for (int c = 0; c < 4; ++c)
+      for (int i = 0; i < 3; ++i) result.elements(4 * e + c, i) = quadratic.elements(e, child[c][i]);
+  return result;
+}
+
+void put_on_sphere(Mesh& mesh, double radius) {
+  for (int i = 0; i < mesh.nodes.rows(); ++i) mesh.nodes.row(i) *= radius / mesh.nodes.row(i).norm();
+}
+
+Mesh subdivided_sphere(Mesh mesh, double radius, int subdivisions) {
+  if (!(radius > 0) || !std::isfinite(radius))
+    throw InputError(format("radius %g of a sphere mesh, a positive number expected", radius));
+  if (subdivisions < 0 || subdivisions > 10)
+    throw InputError(format("%d subdivisions of a sphere mesh, 0 to 10 expected", subdivisions));
+  put_on_sphere(mesh, radius);
+  for (int s = 0; s < subdivisions; ++s) {
+    mesh = subdivide(mesh);
+    put_on_sphere(mesh, radius);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Mesh icosphere(double radius, int subdivisions) {
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  Mesh mesh;
+  mesh.nodes.resize(12, 3);
+  mesh.nodes << -1, g, 0, 1, g, 0, -1, -g, 0, 1, -g, 0,  //
+      0, -1, g, 0, 1, g, 0, -1, -g, 0, 1, -g,            //
+      g, 0, -1, g, 0, 1, -g, 0, -1, -g, 0, 1;
+  mesh.elements.resize(20, 3);
+  mesh.elements << 0, 11, 5, 0, 5, 1, 0, 1, 7, 0, 7, 10, 0, 10, 11,  //
+      1, 5, 9, 5, 11, 4, 11, 10, 2, 10, 7, 6, 7, 1, 8,               //
+      3, 9, 4, 3, 4, 2, 3, 2, 6, 3, 6, 8, 3, 8, 9,                   //
+      4, 9, 5, 2, 4, 11, 6, 2, 10, 8, 6, 7, 9, 8, 1;
+  return subdivided_sphere(std::move(mesh), radius, subdivisions);
+}
+
+Mesh octasphere(double radius, int subdivisions) {
+  Mesh mesh;
+  mesh.nodes.resize(6, 3);
+  mesh.nodes << 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0, 0, 0, 1, 0, 0, -1;
+  mesh.elements.resize(8, 3);
+  mesh.elements << 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4, 1, 0, 5, 2, 1, 5, 3, 2, 5, 0, 3, 5;
+  return subdivided_sphere(std::move(mesh), radius, subdivisions);
+}
+
+Mesh torus_grid(double major, double minor, int n_major, int n_minor) {
+  if (!(minor > 0) || !(major > minor) || !std::isfinite(major))
+    throw InputError(format("torus radii %g and %g, 0 < minor < major expected", major, minor));
+  if (n_major < 3 || n_minor < 3)
+    throw InputError(format("torus grid of %d x %d cells, at least 3 x 3 expected", n_major, n_minor));
+  const double turn = 2 * std::acos(-1.0);
+  Mesh mesh;
+  mesh.nodes.resize(n_major * n_minor, 3);
+  mesh.elements.resize(2 * n_major * n_minor, 3);
+  const auto number = [&](int i, int j) { return i % n_major * n_minor + j % n_minor; };
+  for (int i = 0; i < n_major; ++i)
+    for (int j = 0; j < n_minor; ++j) {
+      const double along = turn * i / n_major, around = turn * j / n_minor;
+      const double from_axis = major + minor * std::cos(around);
+      mesh.nodes.row(number(i, j)) << from_axis * std::cos(along), from_axis * std::sin(along),
+          minor * std::sin(around);
+      const int a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1), d = number(i, j + 1);
+      // Alternating diagonals: every node has four or eight neighbours, except beside a seam of an odd count.
+      const int e = 2 * a;
+      if ((i + j) % 2 == 0) {
+        mesh.elements.row(e) << a, b, c;
+        mesh.elements.row(e + 1) << a, c, d;
+      } else {
+        mesh.elements.row(e) << a, b, d;
+        mesh.elements.row(e + 1) << b, c, d;
+      }
+    }
+  return mesh;
+}
+
+}  // namespace esfem

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/surfaces/named.hpp"
+
+#include <algorithm>
+#include <functional>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+namespace {
+
+using nlohmann::json;
+
+/// A list of `count` positive numbers from a JSON number or array.
+std::vector<double> positive_numbers(const json& value, size_t count, const std::string& what) {
+  const json list = value.is_array() ? value : json::array({value});
+  bool good = list.size() == count;
+  for (const json& entry : list) good = good && entry.is_number() && entry.get<double>() > 0;
+  if (!good) {
+    const std::string expected = count == 1 ? "a positive number" : format("%zu positive numbers", count);
+    throw InputError("surface: " + what + " is " + value.dump() + "; expected " + expected);
+  }
+  return list.get<std::vector<double>>();
+}
+
+/// One named surface: its parameters with defaults, and how it is made from them (in the order of the
+/// defaults).
+struct Entry {
+  std::string name;
+  std::vector<std::pair<std::string, json>> defaults;
+  std::function<Surface(const std::vector<std::vector<double>>&)> make;
+};
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> list = {
+      {"sphere", {{"radius", 1}}, [](const auto& p) { return sphere(p[0][0]); }},
+      {"ellipsoid",
+       {{"axes", {1, 1, 0.6}}},
+       [](const auto& p) { return ellipsoid(p[0][0], p[0][1], p[0][2]); }},
+      {"torus",
+       {{"major", 1}, {"minor", 0.4}},
+       [](const auto& p) {
+         if (p[1][0] >= p[0][0]) {
+           throw InputError(format("surface: torus with minor = %g and major = %g; expected minor < major",
+                                   p[1][0], p[0][0]));
+         }
+         return torus(p[0][0], p[1][0]);
+       }},
+      {"dumbbell", {}, [](const auto&) { return dumbbell(); }},
+  };
+  return list;
+}
+
+}  // namespace
+
+Surface named_surface(const json& description) {
+  const std::string name = description.is_object() ? description.value("name", json()).dump() : "";
+  for (const Entry& entry : entries()) {
+    if (name != json(entry.name).dump()) continue;
+    for (const auto& [key, value] : description.items()) {
+      const bool known = key == "name" || std::any_of(entry.defaults.begin(), entry.defaults.end(),
+                                                      [&](const auto& p) { return p.first == key; });
+      if (known) continue;
+      std::string keys = "name";
+      for (const auto& p : entry.defaults) keys += ", " + p.first;
+      throw InputError("surface: unknown key \"" + key + "\" for " + entry.name + "; known: " + keys);
+    }
+    std::vector<std::vector<double>> parameters;
+    for (const auto& [key, value] : entry.defaults) {
+      const json given = description.value(key, value);
+      parameters.push_back(positive_numbers(given, value.is_array() ? value.size() : 1, key));
+    }
+    return entry.make(parameters);
+  }
+  std::string names;
+  for (const Entry& entry : entries()) names += (names.empty() ? "" : ", ") + entry.name;
+  throw InputError("surface: " + description.dump() + " names no surface; expected {\"name\": one of " +
+                   names + ", ...}");
+}
+
+std::string named_surfaces_help() {
+  std::string text;
+  for (const Entry& entry : entries()) {
+    text += "  " + entry.name;
+    for (const auto& [key, value] : entry.defaults) text += ", \"" + key + "\": " + value.dump();
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace esfem

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <ceres/jet.h>
+
+// Ceres defines the arithmetic of a Jet<T, N> with its scalar T. In a nested Jet the scalar is a Jet itself,
+// so that "2.0 * x" would not compile; these overloads (found by argument-dependent lookup) add the doubles,
+// at any depth.
+namespace ceres {
+
+template <class T>
+struct FromDouble {
+  static T make(double c) { return T(c); }
+};
+template <class T, int N>
+struct FromDouble<Jet<T, N>> {
+  static Jet<T, N> make(double c) { return Jet<T, N>(FromDouble<T>::make(c)); }
+};
+
+template <class T, int N, int M>
+Jet<Jet<T, N>, M> operator+(const Jet<Jet<T, N>, M>& f, double c) {
+  return f + FromDouble<Jet<T, N>>::make(c);
+}
+template <class T, int N, int M>
+Jet<Jet<T, N>, M> operator+(double c, const Jet<Jet<T, N>, M>& f) {
+  return f + c;
+}
+template <class T, int N, int M>
+Jet<Jet<T, N>, M> operator-(const Jet<Jet<T, N>, M>& f, double c) {
+  return f + (-c);
+}
+template <class T, int N, int M>
+Jet<Jet<T, N>, M> operator-(double c, const Jet<Jet<T, N>, M>& f) {
+  return -f + c;
+}
+template <class T, int N, int M>
+Jet<Jet<T, N>, M> operator*(const Jet<Jet<T, N>, M>& f, double c) {
+  return f * FromDouble<Jet<T, N>>::make(c);
+}
+template <class T, int N, int M>
+Jet<Jet<T, N>, M> operator*(double c, const Jet<Jet<T, N>, M>& f) {
+  return f * c;
+}
+template <class T, int N, int M>
+Jet<Jet<T, N>, M> operator/(const Jet<Jet<T, N>, M>& f, double c) {
+  return f * (1.0 / c);
+}
+template <class T, int N, int M>
+Jet<Jet<T, N>, M> operator/(double c, const Jet<Jet<T, N>, M>& f) {
+  return FromDouble<Jet<Jet<T, N>, M>>::make(c) / f;
+}
+
+}  // namespace ceres

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/surfaces/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+Vec3 Surface::normal(const Vec3& y) const {
+  return level_set(y).gradient.normalized();
+}
+
+Mat3 Surface::weingarten(const Vec3& y) const {
+  return shape_at(y).weingarten;
+}
+
+double Surface::mean_curvature(const Vec3& y) const {
+  return shape_at(y).weingarten.trace();
+}
+
+Surface::Shape Surface::shape_at(const Vec3& y) const {
+  const LevelSetJet d = level_set(y);
+  const double slope = d.gradient.norm();
+  const Vec3 nu = d.gradient / slope;
+  const Mat3 projection = Mat3::Identity() - nu * nu.transpose();
+  return {nu, projection * d.hessian * projection / slope};
+}
+
+namespace {
+
+/// The point of {d = 0} that Newton's method along the gradient finds from x; |d| is at round-off.
+Vec3 onto_surface(const Surface& surface, const Vec3& x) {
+  Vec3 y = x;
+  const double longest = 0.2 * surface.bounding_radius, tolerance = 1e-15 * surface.bounding_radius;
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const LevelSetJet d = surface.level_set(y);
+    Vec3 correction = d.value * d.gradient / d.gradient.squaredNorm();
+    const double length = correction.norm();
+    if (!(length < INFINITY)) break;
+    if (length > longest) correction *= longest / length;
+    y -= correction;
+    if (length <= tolerance) break;
+  }
+  return y;
+}
+
+/// Newton's direction for the squared distance to x on the surface, at y: (I + s A) step = P (x - y), where
+/// x - y = s nu + tangential part. Beyond the focal surface I + s A is not positive; its eigenvalues are kept
+/// above 0.2 so that the step descends.
+Vec3 descent_step(const Surface& surface, const Vec3& x, const Vec3& y) {
+  const auto [nu, weingarten] = surface.shape_at(y);
+  const double s = nu.dot(x - y);
+  const Eigen::SelfAdjointEigenSolver<Mat3> modes(Mat3::Identity() + s * weingarten);
+  const Vec3 tangential = x - y - s * nu;
+  const Vec3 step = modes.eigenvectors() * (modes.eigenvectors().transpose() * tangential)
+                                               .cwiseQuotient(modes.eigenvalues().cwiseAbs().cwiseMax(0.2));
+  const double longest = 0.5 * surface.smallest_curvature_radius;
+  return step.norm() > longest ? Vec3(step * (longest / step.norm())) : step;
+}
+
+}  // namespace
+
+Vec3 Surface::closest_point(const Vec3& x) const {
+  if (closed_form_closest_point) return closed_form_closest_point(x);
+  Vec3 y = onto_surface(*this, x);
+  double previous = INFINITY;
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    Vec3 step = descent_step(*this, x, y);
+    const double length = step.norm();
+    Vec3 next = onto_surface(*this, y + step);
+    // Far from the end the distance must decrease; near it the decrease is below round-off.
+    for (int halvings = 0; halvings < 20 && length > 1e-6 * bounding_radius &&
+                           (next - x).squaredNorm() >= (y - x).squaredNorm();
+         ++halvings) {
+      step *= 0.5;
+      next = onto_surface(*this, y + step);
+    }
+    y = next;
+    const bool tiny = length <= 1e-13 * bounding_radius;
+    if (length <= 1e-15 * bounding_radius || (tiny && length >= 0.5 * previous)) return y;
+    previous = length;
+  }
+  throw NumericsError(
+      format("no closest point of the %s found for (%.17g, %.17g, %.17g): is it near the surface?",
+             name.c_str(), x[0], x[1], x[2]));
+}
+
+Surface sphere(double radius) {
+  auto d = [radius](const auto& x1, const auto& x2, const auto& x3) {
+    return (x1 * x1 + x2 * x2 + x3 * x3 - radius * radius) / (2.0 * radius);
+  };
+  Surface surface = make_surface("sphere", d, radius, radius, 2, {{"radius", radius}});
+  surface.closed_form_closest_point = [radius](const Vec3& x) -> Vec3 { return x * (radius / x.norm()); };
+  return surface;
+}
+
+Surface ellipsoid(double a, double b, double c) {
+  auto d = [=](const auto& x1, const auto& x2, const auto& x3) {
+    return 0.5 * (x1 * x1 / (a * a) + x2 * x2 / (b * b) + x3 * x3 / (c * c) - 1.0);
+  };
+  const double longest = std::max({a, b, c}), shortest = std::min({a, b, c});
+  // At the end of the longest axis the curvature of the section with the shortest axis is longest/shortest².
+  return make_surface("ellipsoid", d, longest, shortest * shortest / longest, 2,
+                      {{"a", a}, {"b", b}, {"c", c}});
+}
+
+Surface torus(double major, double minor) {
+  // Half of ((|x|² + R² - r²)² - 4R²(x1² + x2²)) / (4R²): polynomial, so smooth on the axis, too.
+  auto d = [=](const auto& x1, const auto& x2, const auto& x3) {
+    const auto rho2 = x1 * x1 + x2 * x2;
+    const auto s = rho2 + x3 * x3 + (major * major - minor * minor);
+    return (s * s - 4.0 * major * major * rho2) / (8.0 * major * major * minor);
+  };
+  Surface surface = make_surface("torus", d, major + minor, std::min(minor, major - minor), 0,
+                                 {{"major", major}, {"minor", minor}});
+  surface.closed_form_closest_point = [=](const Vec3& x) -> Vec3 {
+    const Vec3 centre = Vec3(x[0], x[1], 0).normalized() * major;
+    return centre + (x - centre).normalized() * minor;
+  };
+  return surface;
+}
+
+Surface dumbbell() {
+  auto d = [](const auto& x1, const auto& x2, const auto& x3) {
+    const auto s = x3 * x3;
+    return x1 * x1 + x2 * x2 + 2.0 * s * (s - 199.0 / 200.0) - 0.04;
+  };
+  // The profile r(x3) has r(0) = 0.2 and r r'' = 199/100 there: the neck's meridian curves most, with radius
+  // 0.2/1.99.
+  return make_surface("dumbbell", d, 1.08, 0.2 / 1.99, 2);
+}
+
+}  // namespace esfem

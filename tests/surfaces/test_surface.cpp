@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "solver/error.hpp"
+#include "solver/surfaces/named.hpp"
+#include "solver/surfaces/surface.hpp"
+
+namespace esfem {
+namespace {
+
+/// Points of the surface: the closest ones to random points of the ball around it.
+std::vector<Vec3> random_points(const Surface& surface, int count) {
+  std::mt19937 generator(1);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform;
+  std::vector<Vec3> points;
+  while (static_cast<int>(points.size()) < count) {
+    Vec3 x(normal(generator), normal(generator), normal(generator));
+    x *= surface.bounding_radius * std::cbrt(uniform(generator)) / x.norm();
+    points.push_back(surface.closest_point(x));
+  }
+  return points;
+}
+
+std::vector<Surface> all_surfaces() {
+  return {sphere(2), sphere(0.5), ellipsoid(1, 1, 0.6), ellipsoid(2, 1, 0.7), torus(1, 0.4), dumbbell()};
+}
+
+TEST(Surface, ClosestPointsLieOnTheSurfaceAndAlongTheNormal) {
+  for (const Surface& surface : all_surfaces()) {
+    for (const Vec3& y : random_points(surface, 200)) {
+      EXPECT_NEAR(surface.level(y), 0, 1e-13) << surface.name;
+      for (double s : {-0.3, -0.05, 0.2}) {
+        const double offset = s * surface.smallest_curvature_radius;
+        const Vec3 found = surface.closest_point(y + offset * surface.normal(y));
+        EXPECT_LT((found - y).norm(), 1e-12)
+            << surface.name << " at " << y.transpose() << ", offset " << offset;
+      }
+    }
+  }
+}
+
+TEST(Surface, SphereHasItsClosedForms) {
+  const Surface surface = sphere(2);
+  const Vec3 y = Vec3(1, -2, 0.5).normalized() * 2;
+  EXPECT_NEAR(surface.mean_curvature(y), 1.0, 1e-14);  // H = +2/R for the outward normal
+  EXPECT_LT((surface.normal(y) - y / 2).norm(), 1e-15);
+  const Mat3 expected = (Mat3::Identity() - y * y.transpose() / 4) / 2;
+  EXPECT_LT((surface.weingarten(y) - expected).norm(), 1e-14);
+}
+
+TEST(Surface, TorusHasItsPrincipalCurvatures) {
+  const double major = 1, minor = 0.4;
+  const Surface surface = torus(major, minor);
+  for (double theta = 0; theta < 6; theta += 0.37) {
+    for (double phi = 0.1; phi < 6; phi += 0.7) {
+      const double rho = major + minor * std::cos(theta);
+      const Vec3 y(rho * std::cos(phi), rho * std::sin(phi), minor * std::sin(theta));
+      const double kappa1 = 1 / minor, kappa2 = std::cos(theta) / rho;
+      EXPECT_NEAR(surface.level(y), 0, 1e-15);
+      EXPECT_NEAR(surface.mean_curvature(y), kappa1 + kappa2, 1e-12);
+      EXPECT_NEAR(surface.weingarten(y).squaredNorm(), kappa1 * kappa1 + kappa2 * kappa2, 1e-12);
+    }
+  }
+}
+
+TEST(Surface, EllipsoidOfRevolutionHasItsMeanCurvature) {
+  // (a cos p cos t, a cos p sin t, c sin p): kappa = a c / m³ along the meridian, c / (a m) around, m² = a²
+  // sin² + c² cos².
+  const double a = 1, c = 0.6;
+  const Surface surface = ellipsoid(a, a, c);
+  for (double p = -1.5; p < 1.5; p += 0.23) {
+    const Vec3 y(a * std::cos(p) * std::cos(1.1), a * std::cos(p) * std::sin(1.1), c * std::sin(p));
+    const double m = std::hypot(a * std::sin(p), c * std::cos(p));
+    EXPECT_NEAR(surface.mean_curvature(y), a * c / (m * m * m) + c / (a * m), 1e-12);
+  }
+}
+
+TEST(Surface, DumbbellHasTheCurvaturesOfItsProfile) {
+  const Surface surface = dumbbell();
+  for (double z = -0.95; z < 1; z += 0.19) {
+    const double r2 = 0.04 - 2 * z * z * (z * z - 199.0 / 200.0), r = std::sqrt(r2);
+    const double r1 = (1.99 * 2 * z - 8 * z * z * z) / (2 * r);
+    const double r11 = ((3.98 - 24 * z * z) / 2 - r1 * r1) / r;
+    const double w = std::sqrt(1 + r1 * r1);
+    const Vec3 y(r * std::cos(0.4), r * std::sin(0.4), z);
+    EXPECT_NEAR(surface.level(y), 0, 1e-15);
+    EXPECT_NEAR(surface.mean_curvature(y), 1 / (r * w) - r11 / (w * w * w), 1e-12);
+  }
+}
+
+TEST(Surface, StatedBoundsHold) {
+  for (const Surface& surface : all_surfaces()) {
+    double largest_curvature = 0;
+    for (const Vec3& y : random_points(surface, 3000)) {
+      EXPECT_LE(y.norm(), surface.bounding_radius * (1 + 1e-12)) << surface.name;
+      const auto curvatures = Eigen::SelfAdjointEigenSolver<Mat3>(surface.weingarten(y)).eigenvalues();
+      largest_curvature = std::max(largest_curvature, curvatures.cwiseAbs().maxCoeff());
+    }
+    EXPECT_LE(largest_curvature, (1 + 1e-9) / surface.smallest_curvature_radius) << surface.name;
+    EXPECT_GE(largest_curvature, 0.8 / surface.smallest_curvature_radius) << surface.name;
+  }
+}
+
+TEST(Surface, NormalsAreTangentiallyConsistentWithTheWeingartenMap) {
+  for (const Surface& surface : all_surfaces()) {
+    for (const Vec3& y : random_points(surface, 20)) {
+      const Vec3 nu = surface.normal(y);
+      const Mat3 A = surface.weingarten(y);
+      EXPECT_LT((A * nu).norm(), 1e-12 / surface.smallest_curvature_radius);
+      const Vec3 tangent = nu.unitOrthogonal();
+      const double step = 1e-5 * surface.smallest_curvature_radius;
+      const Vec3 difference = (surface.normal(surface.closest_point(y + step * tangent)) -
+                               surface.normal(surface.closest_point(y - step * tangent))) /
+                              (2 * step);
+      EXPECT_LT((difference - A * tangent).norm(), 1e-7 / surface.smallest_curvature_radius) << surface.name;
+    }
+  }
+}
+
+TEST(Surface, FarPointsOfAnEllipsoidAreAnErrorOrOnIt) {
+  const Surface surface = ellipsoid(1, 1, 0.6);
+  try {
+    EXPECT_NEAR(surface.level(surface.closest_point(Vec3(0, 0, 1e-9))), 0, 1e-12);
+  } catch (const NumericsError& error) {
+    EXPECT_NE(std::string(error.what()).find("ellipsoid"), std::string::npos);
+  }
+}
+
+TEST(NamedSurface, ReadsParametersAndRefusesUnknownOnes) {
+  EXPECT_EQ(named_surface({{"name", "sphere"}, {"radius", 2}}).parameters.at("radius"), 2);
+  EXPECT_EQ(named_surface({{"name", "ellipsoid"}, {"axes", {1, 2, 3}}}).parameters.at("b"), 2);
+  EXPECT_EQ(named_surface({{"name", "torus"}}).euler_characteristic, 0);
+  EXPECT_EQ(named_surface({{"name", "dumbbell"}}).name, "dumbbell");
+  const std::vector<std::pair<nlohmann::json, std::string>> bad = {
+      {{{"name", "spere"}}, "sphere, ellipsoid, torus, dumbbell"},
+      {{{"name", "sphere"}, {"radios", 2}}, "unknown key \"radios\""},
+      {{{"name", "sphere"}, {"radius", -2}}, "positive number"},
+      {{{"name", "ellipsoid"}, {"axes", {1, 2}}}, "3 positive numbers"},
+      {{{"name", "torus"}, {"minor", 3}}, "minor < major"},
+      {3, "names no surface"},
+  };
+  for (const auto& [description, expected] : bad) {
+    try {
+      named_surface(description);
+      ADD_FAILURE() << description;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(expected), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace esfem
