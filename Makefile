@@ -21,6 +21,9 @@ asked_jobs = $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS)))
 local_jobs = $(shell n=$(asked_jobs); echo $$(( $${n:-$(cores)} < $(cores) ? $${n:-$(cores)} : $(cores) )))
 
 BIN := build/bin
+# Debian's Python has Debian's matplotlib, but another one may come first.
+PYTHON ?= $(shell for p in python3 /usr/bin/python3; do \
+  $$p -c 'import matplotlib' 2>/dev/null && echo $$p && exit; done; echo no-python3-with-matplotlib)
 stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*.cpp 2>/dev/null))))
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
@@ -102,6 +105,7 @@ build-stems: configure
 
 test:
 	@ctest --test-dir build --output-on-failure -j$(local_jobs) | { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
+	$(PYTHON) plots/test_plots.py
 
 format:
 	@clang-format -i $(sources)
@@ -111,8 +115,8 @@ format-check:
 # The sample command lines in the heads of the experiments must be valid.
 samples:
 	@for stem in $(stems); do
-	  { grep -E "^// +$(BIN)/$$stem( |$$)" experiments/$$stem.cpp || true; } | sed 's|^// *||' | while read -r command; do
-	    $$command --list >/dev/null; echo "accepted: $$command"
+	  sed -n "s|^//.*\($(BIN)/$$stem .*\)|\1|p" experiments/$$stem.cpp | while read -r command; do
+	    $$command --output /dev/null --list; echo "accepted: $$command"
 	  done
 	done
 
@@ -146,5 +150,5 @@ for stem in $(2); do
     if [ ! -f $$folder/$$cell.json ] || [ $$folder/.executable -nt $$folder/$$cell.json ]; then echo $$cost; fi
   done <$$folder/.list
 done | awk '{ n += 1; s += $$1 } END { if (n) printf "== %d runs to do, about %.0f s on one core\n", n, s }'
-$(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" $(3)
+$(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" PYTHON=$(PYTHON) $(3)
 endef
