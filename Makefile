@@ -115,8 +115,8 @@ format-check:
 # The sample command lines in the heads of the experiments must be valid.
 samples:
 	@for stem in $(stems); do
-	  sed -n "s|^//.*\($(BIN)/$$stem .*\)|\1|p" experiments/$$stem.cpp | while read -r command; do
-	    $$command --output /dev/null --list; echo "accepted: $$command"
+	  sed -n "s|^//.*\($(BIN)/$$stem .*\)|\1|p" experiments/$$stem.cpp | sed 's/ --output [^ ]*//' | while read -r command; do
+	    $$command --list >/dev/null; echo "accepted: $$command"
 	  done
 	done
 
