@@ -16,17 +16,20 @@ struct Mesh {
 };
 
 /// The P_k mesh with the same element maps as the given one (nodes at the reference nodes of degree k, not
-/// projected onto any surface). The same degree gives the mesh unchanged, with its node order.
+/// projected onto any surface). The same degree gives the mesh unchanged, with its node order; else nodes are
+/// numbered where an element first touches them. A lower degree keeps the positions of its nodes, not the
+/// maps. Throws InputError unless 1 <= degree <= 4.
 Mesh lagrange_mesh(const Mesh& mesh, int degree);
 
 /// The corner triangles as a P1 mesh; keeps the corners' order, drops the other nodes.
 Mesh corner_mesh(const Mesh& mesh);
 
-/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws NumericsError
-/// with the node's number when a node is too far from the surface.
+/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws InputError with
+/// the node's number (from 1) when a node is further away than half the mesh's largest edge.
 void project_nodes(Mesh& mesh, const Surface& surface);
 
-/// Shape of the triangles between the corners (straight edges), at positions x (N x 3).
+/// Shape of the triangles between the corners (straight edges), at positions x (N x 3). Degenerate triangles
+/// have radius ratio 0. Throws InputError when there is no element.
 struct MeshQuality {
   double h;                  ///< largest edge length
   double h_min;              ///< smallest edge length
@@ -40,9 +43,9 @@ MeshQuality mesh_quality(const Connectivity& elements, const Field& x);
 /// Vertices - edges + triangles of the corner triangulation.
 int euler_characteristic(const Mesh& mesh);
 
-/// Subdivided icosahedron projected onto the sphere: 10·4^s + 2 vertices.
+/// Subdivided icosahedron projected onto the sphere: 10·4^s + 2 vertices, s = 0, ..., 10.
 Mesh icosphere(double radius, int subdivisions);
-/// Subdivided octahedron projected onto the sphere: 4·4^s + 2 vertices.
+/// Subdivided octahedron projected onto the sphere: 4·4^s + 2 vertices, s = 0, ..., 10.
 Mesh octasphere(double radius, int subdivisions);
 /// n_major x n_minor grid on a torus, each cell cut along alternating diagonals where that is possible.
 Mesh torus_grid(double major, double minor, int n_major, int n_minor);

@@ -7,11 +7,13 @@
 #include <CGAL/IO/STL.h>
 #include <CGAL/Simple_cartesian.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <functional>
 #include <sstream>
+#include <stdexcept>
 
 #include "solver/error.hpp"
 #include "solver/mesh/mesh_file.hpp"
@@ -21,7 +23,14 @@ namespace esfem {
 namespace {
 
 using Points = std::vector<CGAL::Simple_cartesian<double>::Point_3>;
-using Polygons = std::vector<std::vector<int>>;
+/// The corners of a polygon. CGAL takes memory for as many as a file announces: nonsense must end before.
+struct Polygon : std::vector<int> {
+  void resize(std::size_t corners) {
+    if (corners > 1000) throw std::length_error("corners of a polygon");
+    std::vector<int>::resize(corners);
+  }
+};
+using Polygons = std::vector<Polygon>;
 
 /// What a file must hold besides the numbers; -1 for unknown.
 struct Announced {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -22,7 +23,8 @@ std::string file_with(const std::string& text, const std::string& extension) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   std::string name = std::string(test->test_suite_name()) + "_" + test->name();
   std::replace(name.begin(), name.end(), '/', '_');
-  const std::string path = testing::TempDir() + "esfem_" + name + "." + extension;
+  const std::string folder = ESFEM_BINARY_DIR "/test_meshes/", path = folder + name + "." + extension;
+  std::filesystem::create_directories(folder);
   std::ofstream(path, std::ios::binary) << text;
   return path;
 }
@@ -270,8 +272,7 @@ TEST(ReadMesh, MissingFileOrUnknownFormat) {
     }
   };
   EXPECT_THAT(message("/nowhere/a.msh"), AllOf(HasSubstr("/nowhere/a.msh: "), HasSubstr("missing")));
-  EXPECT_THAT(message(testing::TempDir() + "a.vtk"),
-              AllOf(HasSubstr("a.vtk: "), HasSubstr("'vtk', .msh, .off, .obj")));
+  EXPECT_THAT(message("/nowhere/a.vtk"), AllOf(HasSubstr("a.vtk: "), HasSubstr("'vtk', .msh, .off, .obj")));
   EXPECT_THAT(message("/some.off/a"), HasSubstr("unknown mesh format ''"));
 }
 
@@ -325,6 +326,8 @@ TEST(ReadPolygons, OtherThanTriangles) {
 }
 
 TEST(ReadPolygons, NameTheLineOfABadNumber) {
+  EXPECT_THAT(complaint(replaced(off(octahedron()), "3 1 2 4", "999999999999999 1 2 4"), "off"),
+              HasSubstr("near line 10"));
   EXPECT_THAT(complaint(replaced(off(octahedron()), "0 1 0", "0 nan 0"), "off"),
               HasSubstr("line 4: coordinate 'nan'"));
   EXPECT_THAT(complaint(replaced(stl(octahedron()), "1 0 0", "inf 0 0"), "stl"),

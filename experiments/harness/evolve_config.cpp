@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/harness/evolve_config.hpp"
+
+#include "solver/analysis/json_reader.hpp"
+#include "solver/error.hpp"
+#include "solver/fe/lagrange.hpp"
+#include "solver/mesh/generate.hpp"
+#include "solver/mesh/read.hpp"
+#include "solver/surfaces/named.hpp"
+
+namespace esfem {
+
+namespace {
+
+using nlohmann::json;
+
+int integer_within(const JsonReader& reader, const std::string& key, int otherwise, int low, int high) {
+  const int value = reader.has(key) ? reader.integer(key) : otherwise;
+  if (value < low || value > high) {
+    throw InputError(format("%s: found %s = %d; expected %d to %d", reader.where().c_str(), key.c_str(),
+                            value, low, high));
+  }
+  return value;
+}
+
+/// The one key of an object that must have exactly one of `known`.
+std::string only_key(const JsonReader& reader, const json& object, const std::set<std::string>& known) {
+  reader.accept_only(known);
+  if (object.size() == 1) return object.begin().key();
+  std::string list;
+  for (const std::string& key : known) list += (list.empty() ? "" : ", ") + key;
+  throw InputError(reader.where() + ": found " + object.dump() + "; expected exactly one of the keys " +
+                   list);
+}
+
+/// A subdivided icosahedron, as it is on a sphere, stretched for an ellipsoid.
+Mesh subdivided(const Surface& surface, int subdivisions, const std::string& where) {
+  if (surface.name == "sphere") return icosphere(surface.parameters.at("radius"), subdivisions);
+  if (surface.name == "ellipsoid") {
+    Mesh mesh = icosphere(1, subdivisions);
+    const auto& axes = surface.parameters;
+    mesh.nodes *= Vec3(axes.at("a"), axes.at("b"), axes.at("c")).asDiagonal();
+    return mesh;
+  }
+  throw InputError(where + ": subdivisions make a sphere or an ellipsoid, not a " + surface.name +
+                   "; expected edge_length or file");
+}
+
+void make_mesh(const json& description, const std::string& where, int degree, EvolveConfig& config) {
+  const JsonReader reader(description, where);
+  const std::string key = only_key(reader, description, {"file", "edge_length", "subdivisions"});
+  if (key != "file" && !config.surface) {
+    throw InputError(where + ": " + key + " needs a \"surface\"; expected one, or a mesh with the key file");
+  }
+  if (key == "file") {
+    ReadMesh found = read_mesh(reader.text("file"));
+    config.mesh = std::move(found.mesh);
+    config.mesh_remark = found.remark;
+  } else if (key == "edge_length") {
+    config.mesh = generate_mesh(*config.surface, reader.number("edge_length"));
+  } else {
+    config.mesh = subdivided(*config.surface, integer_within(reader, "subdivisions", 0, 0, 8), where);
+  }
+  config.mesh = lagrange_mesh(config.mesh, degree);
+  if (config.surface) project_nodes(config.mesh, *config.surface);
+}
+
+TimeGrid time_grid(const JsonReader& reader) {
+  TimeGrid grid;
+  grid.order = integer_within(reader, "bdf", 3, 1, max_bdf_order);
+  grid.tau = reader.number("tau");
+  grid.steps = integer_within(reader, "steps", 0, 0, 100000000);
+  if (!(grid.tau > 0)) {
+    throw InputError(
+        format("%s: found tau = %g; expected a positive step size", reader.where().c_str(), grid.tau));
+  }
+  if (reader.has("start")) grid.start = parse_start(reader.text("start"));
+  return grid;
+}
+
+Quadrature quadrature(const json& description, const std::string& where) {
+  const JsonReader reader(description, where);
+  const std::string key = only_key(reader, description, {"conical", "degree"});
+  return key == "conical" ? conical_quadrature(reader.integer("conical"))
+                          : symmetric_quadrature(reader.integer("degree"));
+}
+
+MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const std::string& where) {
+  using Variant = MeanCurvatureFlow::Variant;
+  const JsonReader reader(description, where);
+  reader.accept_only({"velocity", "normalise", "stabilise"});
+  Variant variant;
+  if (reader.has("velocity")) {
+    const std::string velocity = reader.text("velocity");
+    if (velocity != "ritz" && velocity != "interpolation") {
+      throw InputError(where + ": found velocity = \"" + velocity + "\"; expected ritz or interpolation");
+    }
+    variant.velocity = velocity == "ritz" ? Variant::ritz : Variant::interpolation;
+  }
+  if (reader.has("normalise")) {
+    if (!description["normalise"].is_boolean())
+      reader.wrong_type("normalise", "true or false", description["normalise"]);
+    variant.normalise = description["normalise"].get<bool>();
+  }
+  variant.stabilise = reader.number_or("stabilise", 0);
+  if (!(variant.stabilise >= 0)) {
+    throw InputError(
+        format("%s: found stabilise = %g; expected a number >= 0", where.c_str(), variant.stabilise));
+  }
+  return variant;
+}
+
+}  // namespace
+
+EvolveConfig evolve_config(const json& description, const std::string& source) {
+  const JsonReader reader(description, source);
+  EvolveConfig config;
+  config.flow = reader.text("flow");
+  if (config.flow != "mean_curvature") {
+    throw InputError(source + ": found flow = \"" + config.flow + "\"; expected mean_curvature");
+  }
+  reader.accept_only({"flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start", "quadrature",
+                      "variant", "output"});
+  const int degree = integer_within(reader, "degree", 2, 1, max_degree);
+  config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
+                                         : default_quadrature(degree);
+  config.grid = time_grid(reader);
+  config.start_given = reader.has("start");
+  if (reader.has("variant")) {
+    config.mean_curvature = mean_curvature_variant(reader.object("variant"), source + ": variant");
+  }
+  if (reader.has("output")) {
+    const JsonReader output(reader.object("output"), source + ": output");
+    output.accept_only({"nodal", "series"});
+    config.nodal = output.has("nodal") ? output.text("nodal") : "";
+    config.series = output.has("series") ? output.text("series") : "";
+  }
+  if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
+  make_mesh(reader.object("mesh"), source + ": mesh", degree, config);
+  return config;
+}
+
+std::string evolve_config_help() {
+  return "CONFIG.json (keys without a default must be given; unknown keys are errors):\n"
+         "  {\"flow\": \"mean_curvature\",                 kll19 (5.1)\n"
+         "   \"surface\": {\"name\": \"sphere\", \"radius\": 2},  exact initial surface; may be left out "
+         "with a mesh file\n"
+         "   \"mesh\": {\"file\": \"a.msh\"}                 .msh, .off, .obj, .ply, .stl; nodes are "
+         "projected to the surface\n"
+         "         | {\"edge_length\": 0.25}              largest edge of a generated mesh, in the surface's "
+         "units\n"
+         "         | {\"subdivisions\": 4},               of an icosahedron, for sphere and ellipsoid\n"
+         "   \"degree\": 2,                               1..4\n"
+         "   \"bdf\": 3,                                  1..5\n"
+         "   \"tau\": 0.05,                               step size (no default)\n"
+         "   \"steps\": 0,                                end time = steps tau; 0 writes the initial "
+         "surface\n"
+         "   \"start\": \"exact\" | \"cascade\" | \"substeps:16\",  default: exact where a solution is known "
+         "(sphere),\n"
+         "                                              else substeps:16\n"
+         "   \"quadrature\": {\"conical\": 6} | {\"degree\": 10},  default: degree 4, 6, 8, 10 for P1..P4\n"
+         "   \"variant\": {\"velocity\": \"ritz\" | \"interpolation\", \"normalise\": false, \"stabilise\": "
+         "0},\n"
+         "   \"output\": {\"nodal\": \"end.json\", \"series\": \"series.json\"}}  default: nodal values on "
+         "standard output\n"
+         "Surfaces and their defaults:\n" +
+         named_surfaces_help() +
+         "Output: nodal has t, x, v, nu, H of the last step, one row a node in the order of the mesh; series "
+         "has, per\n"
+         "step, t, area, volume, willmore_energy (1/2 int H²), max_H, min_nu, max_nu, h, worst_angle "
+         "(degrees),\n"
+         "worst_radius_ratio.";
+}
+
+}  // namespace esfem

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "solver/fe/quadrature.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/mesh/mesh.hpp"
+#include "solver/time/integrate.hpp"
+
+namespace esfem {
+
+/// What a CONFIG.json of `evolve` asks for, with the defaults filled in.
+struct EvolveConfig {
+  std::string flow;
+  std::optional<Surface> surface;  ///< the exact initial surface, where one is given
+  Mesh mesh;                       ///< P_k; on the surface, where there is one
+  std::string mesh_remark;         ///< what the reader of the mesh changed; empty: nothing
+  TimeGrid grid;
+  bool start_given = false;  ///< whether grid.start comes from the file
+  Quadrature rule;
+  MeanCurvatureFlow::Variant mean_curvature;
+  std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
+};
+
+/// Reads a configuration and makes its mesh. Paths in it are relative to the working directory. Throws
+/// InputError, which names `source` and the key, for unknown keys (listing the known ones) and values of the
+/// wrong type or range.
+EvolveConfig evolve_config(const nlohmann::json& json, const std::string& source);
+
+/// The keys with their defaults, for --help.
+std::string evolve_config_help();
+
+}  // namespace esfem
