@@ -21,6 +21,9 @@ asked_jobs = $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS)))
 local_jobs = $(shell n=$(asked_jobs); echo $$(( $${n:-$(cores)} < $(cores) ? $${n:-$(cores)} : $(cores) )))
 
 BIN := build/bin
+# Debian's Python has Debian's matplotlib, but another one may come first.
+PYTHON ?= $(shell for p in python3 /usr/bin/python3; do \
+  $$p -c 'import matplotlib' 2>/dev/null && echo $$p && exit; done; echo no-python3-with-matplotlib)
 stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*.cpp 2>/dev/null))))
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
@@ -101,7 +104,8 @@ build-stems: configure
 	@$(call build_targets,--target experiments)
 
 test:
-	@ctest --test-dir build --output-on-failure -j$(local_jobs)
+	@ctest --test-dir build --output-on-failure -j$(local_jobs) | { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
+	$(PYTHON) plots/test_plots.py
 
 format:
 	@clang-format -i $(sources)
@@ -111,7 +115,7 @@ format-check:
 # The sample command lines in the heads of the experiments must be valid.
 samples:
 	@for stem in $(stems); do
-	  { grep -E "^// +$(BIN)/$$stem( |$$)" experiments/$$stem.cpp || true; } | sed 's|^// *||' | while read -r command; do
+	  sed -n "s|^//.*\($(BIN)/$$stem .*\)|\1|p" experiments/$$stem.cpp | sed 's/ --output [^ ]*//' | while read -r command; do
 	    $$command --list >/dev/null; echo "accepted: $$command"
 	  done
 	done
@@ -122,8 +126,7 @@ plots-check:
 	+@$(call run,check,$(stems),figures)
 
 verdicts:
-	@tables=$$(ls results/check/*.json 2>/dev/null || true)
-	if [ -z "$$tables" ]; then echo "no tables"; else $(BIN)/check_orders $$tables; fi
+	@$(if $(stems),$(BIN)/check_orders $(stems:%=results/check/%.json),echo "no experiments")
 
 bench: configure
 	@$(call build_targets,--target bench_step)
@@ -147,5 +150,5 @@ for stem in $(2); do
     if [ ! -f $$folder/$$cell.json ] || [ $$folder/.executable -nt $$folder/$$cell.json ]; then echo $$cost; fi
   done <$$folder/.list
 done | awk '{ n += 1; s += $$1 } END { if (n) printf "== %d runs to do, about %.0f s on one core\n", n, s }'
-$(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" $(3)
+$(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" PYTHON=$(PYTHON) $(3)
 endef

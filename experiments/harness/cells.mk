@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The cells, tables and figures of the experiments STEMS at one PRESET; the Makefile calls it from the project's root
-# when results/PRESET/cells/STEM/.list and .executable are there. Goals: tables, figures, all.
+# The cells, tables and figures of the experiments STEMS at one PRESET, drawn by PYTHON; the Makefile calls it from the
+# project's root when results/PRESET/cells/STEM/.list and .executable are there. Goals: tables, figures, all.
 
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -14,12 +14,10 @@ BIN := build/bin
 cells := results/$(PRESET)/cells
 figures := $(if $(filter paper,$(PRESET)),figures,build/figures-check)
 plotted := $(foreach stem,$(STEMS),$(if $(wildcard plots/$(stem).py),$(stem)))
-PYTHON ?= $(shell for p in python3 /usr/bin/python3; do \
-  $$p -c 'import matplotlib' 2>/dev/null && echo $$p && break; done)
-PYTHON := $(PYTHON)
 
 # Of all experiments together, dearest first: so the last runs to finish are short ones.
-all_cells := $(shell cd $(cells) && for s in $(STEMS); do sed "s|^\([^ ]*\)|$$s/\1.json|" $$s/.list; done | sort -k2,2gr | cut -d' ' -f1)
+all_cells := $(shell cd $(cells) && for s in $(STEMS); do sed "s|^\([^ ]*\)|$$s/\1.json|" $$s/.list; done | \
+  sort -k2,2gr | cut -d' ' -f1)
 all_cells := $(addprefix $(cells)/,$(all_cells))
 cells_of = $(filter $(cells)/$(1)/%,$(all_cells))
 
@@ -40,8 +38,7 @@ results/$(PRESET)/$(1).json results/$(PRESET)/$(1).csv results/$(PRESET)/$(1).te
 	echo "$(1): results/$(PRESET)/$(1).json"
 
 $(figures)/.$(1).drawn: results/$(PRESET)/$(1).json $(wildcard plots/*.py)
-	@[ -n "$$(PYTHON)" ] || { echo "no python3 can import matplotlib: install python3-matplotlib" >&2; exit 1; }
-	mkdir -p $(figures)
+	@mkdir -p $(figures)
 	$$(PYTHON) plots/$(1).py results/$(PRESET)/$(1).json $(figures)
 	touch $$@
 	echo "$(1): drawn into $(figures)"

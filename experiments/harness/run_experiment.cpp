@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cerrno>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <regex>
@@ -52,11 +51,10 @@ void add_run_options(CLI::App& app, Request& request) {
       ->excludes(cell)
       ->group(group);
   app.add_option("--output", request.output,
-                 "where the table goes; a table of all cells in FILE.json is written to "
+                 "where the table (or list) goes; a table of all cells in FILE.json is written to "
                  "FILE.csv and FILE.tex, too; - is standard output")
       ->type_name("FILE")
       ->capture_default_str()
-      ->excludes(list)
       ->group(group);
   app.add_option("--threads", request.threads, "threads that the libraries may use")
       ->check(CLI::Range(1, 1024))
@@ -198,8 +196,9 @@ void write_table(const Table& table, const std::string& output) {
 void answer(const Experiment& experiment, const Request& request, Table table) {
   const std::vector<Cell> cells = checked_cells(experiment, request.options);
   if (request.list) {
-    for (const Cell& cell : dearest_first(cells)) std::printf("%s %.2f\n", cell.name.c_str(), cell.cost);
-    return;
+    std::string text;
+    for (const Cell& cell : dearest_first(cells)) text += format("%s %.2f\n", cell.name.c_str(), cell.cost);
+    return write_file(request.output, text);
   }
   if (experiment.parameters) table.parameters = experiment.parameters(request.options);
   if (!request.cell.empty()) {

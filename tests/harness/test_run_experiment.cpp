@@ -146,11 +146,13 @@ TEST_F(RunExperiment, ProvenanceSaysWhereTheNumbersComeFrom) {
 }
 
 TEST_F(RunExperiment, PeakMemoryIsNotThatOfTheProgramThatStartedIt) {
+#ifdef __SANITIZE_ADDRESS__
+  GTEST_SKIP() << "the sanitizer's own memory is larger";
+#endif
   std::vector<char> large(200 << 20, 1);  // resident in this process while the child starts
   run("--cell h0_tau0 --output cell.json");
   EXPECT_EQ(large[large.size() / 2], 1);
-  const double sanitizer_overhead = std::getenv("ASAN_OPTIONS") ? 1000 : 0;
-  EXPECT_LT(table("cell.json").rows[0].peak_memory_mb, 150 + sanitizer_overhead);
+  EXPECT_LT(table("cell.json").rows[0].peak_memory_mb, 150);
 }
 
 TEST_F(RunExperiment, AFailedCellIsARowWithItsStatus) {
