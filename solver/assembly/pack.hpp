@@ -39,7 +39,7 @@ inline Pack sqrt(const Pack& p) {
 /// bottleneck of a quadrature point.
 inline Pack inverse_sqrt(const Pack& p) {
 #ifdef __AVX512F__
-  Pack y = _mm512_rsqrt14_pd(p);
+  Pack y = _mm512_maskz_rsqrt14_pd(0xff, p);
   for (int step = 0; step < 2; ++step) y += 0.5 * y * (1.0 - p * y * y);
   return y;
 #else

@@ -48,6 +48,7 @@ struct SparseCholesky::Cholmod {
   cholmod_sparse* permuted =
       nullptr;                ///< lower triangle of P(aM + bA)Pᵀ, which the numeric factorisation reads
   std::vector<int> position;  ///< where an entry of the pattern goes in it
+  bool factorised = false;
   cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
   explicit Cholmod(std::shared_ptr<const SparsityPattern> shared);
@@ -145,6 +146,7 @@ void SparseCholesky::factorise(double a, const SymmetricMatrix& M, double b, con
   }
   if (!std::isfinite(sum)) throw NumericsError("matrix to factorise is not finite");
 
+  c.factorised = false;
   double shift[2] = {0, 0};
   c.common.status = CHOLMOD_OK;
   cholmod_super_numeric(c.permuted, nullptr, shift, c.factor, &c.common);
@@ -153,6 +155,7 @@ void SparseCholesky::factorise(double a, const SymmetricMatrix& M, double b, con
                                static_cast<int*>(c.factor->Perm)[c.factor->minor], c.pattern->size));
   if (c.common.status != CHOLMOD_OK)
     throw NumericsError(format("Cholesky factorisation failed (CHOLMOD status %d)", c.common.status));
+  c.factorised = true;
 }
 
 void SparseCholesky::solve(Field& rhs) {
@@ -161,6 +164,7 @@ void SparseCholesky::solve(Field& rhs) {
   if (rhs.rows() != c.pattern->size)
     throw InputError(
         format("right-hand side has %d rows, expected %d", static_cast<int>(rhs.rows()), c.pattern->size));
+  if (!c.factorised) throw NumericsError("nothing is factorised to solve with");
   cholmod_dense right = {};
   right.nrow = right.d = rhs.rows();
   right.ncol = rhs.cols();

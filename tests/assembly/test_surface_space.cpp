@@ -79,5 +79,88 @@ TEST_P(SurfaceSpaceOfDegree, LoadsAgreeWithMatrices) {
   EXPECT_LT((W.values - M.values).cwiseAbs().maxCoeff(), 1e-15);
 }
 
+TEST_P(SurfaceSpaceOfDegree, ResultsDoNotDependOnTheOrderOfElementsOrOnRotations) {
+  const Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, GetParam(), 1);
+  Mesh reversed = mesh;
+  reversed.elements = mesh.elements.colwise().reverse().eval();
+  const SurfaceSpace space(mesh), reversed_space(reversed);
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  SymmetricMatrix reversed_M = reversed_space.matrix(), reversed_A = reversed_space.matrix();
+  space.assemble(mesh.nodes, M, A);
+  const Mat3 rotation = Eigen::AngleAxisd(1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  reversed_space.assemble(mesh.nodes * rotation, reversed_M, reversed_A);
+  EXPECT_LT((M.values - reversed_M.values).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT((A.values - reversed_A.values).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(SurfaceSpace, ResultsDoNotDependOnTheFirstCornerOfAnElement) {
+  const Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, 2, 1);
+  Mesh turned = mesh;
+  for (int e = 0; e < mesh.elements.rows(); e += 2)
+    for (int a = 0; a < 3; ++a) {
+      turned.elements(e, a) = mesh.elements(e, (a + 1) % 3);
+      turned.elements(e, 3 + a) = mesh.elements(e, 3 + (a + 1) % 3);
+    }
+  const SurfaceSpace space(mesh), turned_space(turned);
+  SymmetricMatrix M = space.matrix(), A = space.matrix(), turned_M = turned_space.matrix(),
+                  turned_A = turned_space.matrix();
+  space.assemble(mesh.nodes, M, A);
+  turned_space.assemble(mesh.nodes, turned_M, turned_A);
+  EXPECT_LT((M.values - turned_M.values).cwiseAbs().maxCoeff(), 1e-15);
+  EXPECT_LT((A.values - turned_A.values).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+TEST(SurfaceSpace, TooWeakQuadratureLosesTheOrder) {
+  double error[2];
+  for (int level = 0; level < 2; ++level) {
+    const Mesh mesh = sphere_mesh(2, 2, 2 + level);
+    error[level] = SurfaceSpace(mesh, symmetric_quadrature(1)).area(mesh.nodes) - 16 * pi;
+  }
+  EXPECT_LT(order(error[0], error[1]), 2.5);
+}
+
+TEST(SurfaceSpace, WeightedMassAgreesWithTheLoadOfTheProduct) {
+  const Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, 2, 1);
+  const SurfaceSpace space(mesh);
+  SymmetricMatrix W = space.matrix();
+  const Field u = mesh.nodes.leftCols(2);
+  auto weight = [](const PointData<2>& at) { return at.u[0] * at.x[2] + dot(at.grad[1], at.normal) + 2.0; };
+  space.assemble_weighted_mass<2>(mesh.nodes, u, weight, W);
+  Field load;
+  space.assemble_load<2, 1, 0>(
+      mesh.nodes, u,
+      [&](const PointData<2>& at, Integrand<1, 0>& out) { out.value[0] = weight(at) * at.u[1]; }, load);
+  EXPECT_LT((W * u.col(1) - load).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(SurfaceSpace, PointDataIsConsistent) {
+  const Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, 2, 1);
+  const SurfaceSpace space(mesh);
+  auto check = [&](const PointData<3>& at, Integrand<1, 0>& out) {
+    for (int i = 0; i < 3; ++i)
+      for (int lane = 0; lane < pack_size; ++lane) {
+        EXPECT_NEAR(at.u[i][lane], at.x[i][lane], 1e-15);
+        EXPECT_NEAR(dot(at.normal, at.normal)[lane], 1, 1e-14);
+        // The tangential gradient of the position is the projection I - n nᵀ.
+        for (int j = 0; j < 3; ++j)
+          EXPECT_NEAR(at.grad[i][j][lane], (i == j) - at.normal[i][lane] * at.normal[j][lane], 1e-13);
+      }
+    out.value[0] = dot(at.x, at.normal);
+  };
+  Field load;
+  space.assemble_load<3, 1, 0>(mesh.nodes, mesh.nodes, check, load);
+  EXPECT_NEAR(load.sum(), 3 * space.volume(mesh.nodes), 1e-13) << "the normal is outward";
+  EXPECT_GT(load.sum(), 1);
+}
+
+TEST(SurfaceSpace, FieldsOfAnotherSizeAreRefused) {
+  const Mesh mesh = icosphere(1, 1);
+  const SurfaceSpace space(mesh), other(icosphere(1, 0));
+  SymmetricMatrix M = space.matrix(), A = other.matrix();
+  EXPECT_THROW(space.area(mesh.nodes.topRows(12)), InputError);
+  EXPECT_THROW(space.area(mesh.nodes.leftCols(2)), InputError);
+  EXPECT_THROW(space.assemble(mesh.nodes, M, A), InputError);
+}
+
 }  // namespace
 }  // namespace esfem
