@@ -196,7 +196,7 @@ Verdict check_claim(const Claim& claim, const Table& table) {
     verdict = claim.kind == Claim::order ? check_order(claim, rows) : check_size(claim, rows);
     verdict.met = verdict.reason.empty();
   } catch (const InputError& error) {
-    verdict.reason = std::string("Nothing to check: ") + error.what();
+    verdict.reason = std::string("Cannot be checked: ") + error.what();
   } catch (const NumericsError& error) {
     verdict.reason = std::string("No order: ") + error.what();
   }

@@ -15,9 +15,8 @@ namespace esfem {
 /// What a paper (or this project) says about one error of an experiment.
 ///
 /// order: the order in `variable`, fitted to the rows in range, is at least expected - tolerance (one-sided:
-/// methods may
-///        do better), and at most `at_most` when that is given.
-/// size:  the error of every row in range is at most `at_most` (and at least `at_least`).
+/// a method may do better), and at most `at_most` when that is given. size: the error of every row in range
+/// is at most `at_most` (and at least `at_least`).
 struct Claim {
   enum Kind { order, size } kind = order;
   std::string id, statement;

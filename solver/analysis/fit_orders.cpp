@@ -215,9 +215,7 @@ bool find_standard_errors(const Data& data, Solution& solution) {
     double value = 0;
     if (!covariance.GetCovarianceBlock(&parameters[k], &parameters[k], &value)) return false;
     solution.standard_error[k] = std::sqrt(value * variance);
-    const bool is_order = k % 2 == 1;
     if (!std::isfinite(solution.standard_error[k])) return false;
-    if (is_order && solution.standard_error[k] > largest_standard_error) return false;
   }
   return true;
 }
@@ -291,8 +289,8 @@ OrderFit to_fit(const Data& data, const Solution& solution) {
   const auto& [log_C_h, p, log_C_tau, q] = solution.parameters;
   OrderFit fit;
   fit.rows_used = data.rows();
-  fit.has_h = solution.model.h == Term::power;
-  fit.has_tau = solution.model.tau == Term::power;
+  fit.has_h = solution.model.h == Term::power && solution.standard_error[1] <= largest_standard_error;
+  fit.has_tau = solution.model.tau == Term::power && solution.standard_error[3] <= largest_standard_error;
   if (solution.model.h != Term::none) fit.constant_h = std::exp(log_C_h - p * data.centre_h);
   if (solution.model.tau != Term::none) fit.constant_tau = std::exp(log_C_tau - q * data.centre_tau);
   if (fit.has_h) {
@@ -329,11 +327,12 @@ OrderFit fit_orders(const std::vector<double>& h, const std::vector<double>& tau
     const std::optional<Solution> solution = solve(data, model);
     if (solution && (!best || solution->criterion < best->criterion)) best = solution;
   }
-  if (!best)
+  const OrderFit fit = best ? to_fit(data, *best) : OrderFit{};
+  if (!fit.has_h && !fit.has_tau)
     throw NumericsError(
         format("order fit: %d rows (%d values of h, %d of tau) determine no order to within %g", data.rows(),
                distinct_h, distinct_tau, largest_standard_error));
-  return to_fit(data, *best);
+  return fit;
 }
 
 bool in_range(const Row& row, const RowRange& range) {

@@ -19,20 +19,23 @@ bool in_range(const Row& row, const RowRange& range);
 
 /// Observed orders p, q of e = C_h h^p + C_tau tau^q (positive C), from all given rows at once.
 struct OrderFit {
-  bool has_h = false, has_tau = false;  ///< the variable varies and its term is identified by the data
+  bool has_h = false, has_tau = false;  ///< the variable varies and the data determine its order
   double order_h = 0, ci95_h[2] = {0, 0};
   double order_tau = 0, ci95_tau[2] = {0, 0};
-  double constant_h = 0, constant_tau = 0;
+  double constant_h = 0, constant_tau = 0;  ///< 0: the term is not in the model
   int rows_used = 0;
 };
 
 /// Fits log e = log(C_h h^p + C_tau tau^q) by Ceres with Cauchy's loss; 95% intervals from the covariance
 /// (scaled by the residual variance, Student's t). When only one variable varies, the other term is a
-/// constant plateau. Of the full model and the ones with a single term the one is taken that the data support
-/// (Bayesian information criterion; standard errors of the orders at most 1/2): a term that shows nowhere has
-/// no order, has_h or has_tau is false then, and so is its constant 0. Throws InputError, which says how many
-/// rows there are and how many are needed, when there are too few rows, nothing varies, or a number is not
-/// positive; NumericsError when the rows determine no order.
+/// constant plateau.
+///
+/// Of the full model and those with a single term the data choose (Bayesian information criterion), so that a
+/// term that shows nowhere is left out. An order counts as determined (has_h, has_tau) when its standard
+/// error is at most 1/2; a term that shows in a few rows only stays in the model without one.
+///
+/// Throws InputError, which says how many rows there are and how many are needed, when there are too few
+/// rows, nothing varies, or a number is not positive; NumericsError when the rows determine no order.
 OrderFit fit_orders(const std::vector<double>& h, const std::vector<double>& tau,
                     const std::vector<double>& error);
 

@@ -172,6 +172,15 @@ TEST(FitOrders, AnInvisibleTermHasNoOrder) {
   }
 }
 
+TEST(FitOrders, ATermSeenInAFewRowsDoesNotSpoilTheOther) {
+  // The h term is half of the error in one row of 12, and little elsewhere.
+  const OrderFit fit = with_noise(grid(3, 4, 1e-3, 4, 4, 3), 0.1, 2).fit();
+  EXPECT_TRUE(fit.has_tau);
+  EXPECT_FALSE(fit.has_h) << "order " << fit.order_h;
+  EXPECT_GT(fit.constant_h, 0);
+  EXPECT_NEAR(fit.order_tau, 3, 0.1);
+}
+
 std::string input_error(const Samples& samples) {
   try {
     samples.fit();
