@@ -8,6 +8,7 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <map>
@@ -16,7 +17,9 @@
 #include <vector>
 
 #include "bench/naive_step.hpp"
+#include "experiments/harness/threads.hpp"
 #include "solver/assembly/surface_space.hpp"
+#include "solver/linalg/openblas.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
 #include "solver/mesh/mesh.hpp"
 
@@ -145,6 +148,8 @@ void step(benchmark::State& state, int subdivisions) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (const char* core = openblas_core_type()) setenv("OPENBLAS_CORETYPE", core, 0);
+  limit_threads(argc, argv);
   std::vector<char*> arguments(argv, argv + argc);
   std::string tabular = "--benchmark_counters_tabular=true";
   arguments.insert(arguments.begin() + 1, tabular.data());
