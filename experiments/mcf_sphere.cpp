@@ -65,7 +65,7 @@ Setting resolve(const Options& options, const std::string& quadrature) {
   setting.meshes = options.meshes;
   const int meshes = static_cast<int>(setting.meshes.size());
   setting.levels = options.levels.value_or(meshes ? range(0, meshes - 1) : paper ? range(0, 4) : range(0, 2));
-  setting.steps = options.steps.value_or(paper ? range(0, 7) : range(1, 6));
+  setting.steps = options.steps.value_or(paper ? range(0, 7) : range(2, 6));
   setting.start = options.start.value_or(Start{});
   setting.rule = quadrature.empty() ? default_quadrature(setting.degree) : parse_quadrature(quadrature);
   for (int level : setting.levels) {

@@ -24,8 +24,8 @@ Mesh lagrange_mesh(const Mesh& mesh, int degree);
 /// The corner triangles as a P1 mesh; keeps the corners' order, drops the other nodes.
 Mesh corner_mesh(const Mesh& mesh);
 
-/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws InputError with
-/// the node's number (from 1) when a node is further away than half the mesh's largest edge.
+/// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws InputError
+/// with the node's number (from 1) when a node is further away than half the mesh's largest edge.
 void project_nodes(Mesh& mesh, const Surface& surface);
 
 /// Shape of the triangles between the corners (straight edges), at positions x (N x 3). Degenerate triangles
