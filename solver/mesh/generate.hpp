@@ -14,7 +14,10 @@ namespace esfem {
 /// surface (edge_length > smallest_curvature_radius/2), NumericsError when the promised quality is missed.
 Mesh generate_mesh(const Surface& surface, double edge_length);
 
-/// The same with a size function (edge length wanted at a point of the surface), for graded meshes.
+/// The same with a size function (edge length wanted near a point of the surface; the largest edges there get
+/// it), for graded meshes. It must be positive, vary smoothly (a jump costs quality), and resolve the surface
+/// where it is evaluated: at most half the local radius of curvature. Every angle >= 20 degrees, no edge more
+/// than 1.25 times the one asked for.
 Mesh generate_mesh(const Surface& surface, const std::function<double(const Vec3&)>& edge_length);
 
 }  // namespace esfem
