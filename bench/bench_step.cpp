@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "bench/naive_step.hpp"
-#include "experiments/harness/threads.hpp"
+#include "experiments/harness/library_environment.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/linalg/openblas.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
@@ -149,7 +149,7 @@ void step(benchmark::State& state, int subdivisions) {
 
 int main(int argc, char** argv) {
   if (const char* core = openblas_core_type()) setenv("OPENBLAS_CORETYPE", core, 0);
-  limit_threads(argc, argv);
+  set_library_environment(argc, argv);
   std::vector<char*> arguments(argv, argv + argc);
   std::string tabular = "--benchmark_counters_tabular=true";
   arguments.insert(arguments.begin() + 1, tabular.data());

@@ -13,8 +13,8 @@
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/evolve_config.hpp"
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/library_environment.hpp"
 #include "experiments/harness/provenance.hpp"
-#include "experiments/harness/threads.hpp"
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
@@ -119,7 +119,7 @@ int evolve(const std::string& file, const json& origin) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  limit_threads(argc, argv);
+  set_library_environment(argc, argv);
   return guarded_main([&] {
     CLI::App app(
         "Evolves a surface: flow, surface or mesh, and method come from a JSON file.\n"

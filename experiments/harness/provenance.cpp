@@ -8,7 +8,7 @@
 #include <fstream>
 #include <set>
 
-#include "experiments/harness/threads.hpp"
+#include "experiments/harness/library_environment.hpp"
 
 namespace esfem {
 

@@ -8,10 +8,10 @@
 
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/library_environment.hpp"
 #include "experiments/harness/peak_memory.hpp"
 #include "experiments/harness/progress.hpp"
 #include "experiments/harness/provenance.hpp"
-#include "experiments/harness/threads.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
@@ -216,7 +216,7 @@ void answer(const Experiment& experiment, const Request& request, Table table) {
 }  // namespace
 
 int run_experiment(const Experiment& experiment, int argc, char** argv) {
-  limit_threads(argc, argv);
+  set_library_environment(argc, argv);
   return guarded_main([&] {
     Request request;
     CLI::App app(experiment.help, experiment.stem);

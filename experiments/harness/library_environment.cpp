@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/harness/threads.hpp"
+#include "experiments/harness/library_environment.hpp"
 
 #include <unistd.h>
 
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "experiments/harness/provenance.hpp"
+#include "solver/linalg/openblas.hpp"
 
 namespace esfem {
 
@@ -30,16 +31,17 @@ int threads_asked(int argc, char** argv) {
   return 1;
 }
 
-void limit_threads(int argc, char** argv) {
+void set_library_environment(int argc, char** argv) {
   const std::string wanted = std::to_string(threads_asked(argc, argv));
   const char* const variables[] = {"OMP_NUM_THREADS", "OMP_THREAD_LIMIT", "OPENBLAS_NUM_THREADS"};
-  bool all_set = true;
+  bool all_set = std::getenv("OPENBLAS_CORETYPE") || !openblas_core_type();
   for (const char* variable : variables) all_set = all_set && is_set_to(variable, wanted);
   // The guard holds the process id, which survives the restart and is not mistaken for a parent's.
   const std::string process = std::to_string(getpid());
   if (all_set || is_set_to("ESFEM_THREADS", process)) return;
 
   for (const char* variable : variables) setenv(variable, wanted.c_str(), 1);
+  if (const char* core = openblas_core_type()) setenv("OPENBLAS_CORETYPE", core, 0);
   setenv("ESFEM_THREADS", process.c_str(), 1);
   execv(executable_path().c_str(), argv);
   // Not restarted (no /proc): the limits hold at least for what reads them later.
