@@ -12,7 +12,7 @@ namespace esfem {
 
 constexpr int max_nodes_per_element = 15;
 
-/// Eight elements that are treated as one, at given positions of the nodes.
+/// pack_size elements that are treated as one, at given positions of the nodes.
 struct Batch {
   int number;
   const int* node;                   ///< node[8 a + lane] is local node a of the lane's element
@@ -29,11 +29,8 @@ struct BatchPoint {
   Pack jacobian, inverse_jacobian;
 };
 
-/// Eight truth values, -1 or 0.
-using Lanes = long __attribute__((vector_size(64)));
-
-/// The elements of a mesh in batches of eight, with the shape functions at the points of a quadrature rule.
-/// The last batch is filled up with repetitions of the last element, which count zero times.
+/// The elements of a mesh in batches of pack_size, with the shape functions at the points of a quadrature
+/// rule. The last batch is filled up with repetitions of the last element, which count zero times.
 class ElementBatches {
  public:
   /// One shape function at one quadrature point.

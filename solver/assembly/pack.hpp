@@ -7,16 +7,23 @@
 
 #include <cmath>
 
-// Without AVX-512 GCC notes that functions on Packs have another ABI than with it; all of them are inlined.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace esfem {
 
-/// Eight doubles, one per element of a batch: arithmetic on a Pack is arithmetic on eight elements at once,
-/// which the compiler turns into one AVX-512, two AVX2 or four SSE2 instructions. Scalars mix freely (2 * p,
-/// p + 1.0).
-using Pack = double __attribute__((vector_size(64)));
+// The widest vectors of the machine: GCC takes wider ones apart in memory, which is ten times slower.
+#if defined(__AVX512F__)
 constexpr int pack_size = 8;
+#elif defined(__AVX__)
+constexpr int pack_size = 4;
+#else
+constexpr int pack_size = 2;
+#endif
+
+/// One double per element of a batch (8 with AVX-512, 4 with AVX2, 2 with SSE2): arithmetic on a Pack is
+/// arithmetic on the elements of a batch at once, one instruction each. Scalars mix freely (2 * p, p + 1.0).
+using Pack = double __attribute__((vector_size(pack_size * sizeof(double))));
+
+/// Truth values of comparisons of Packs, -1 or 0.
+using Lanes = long __attribute__((vector_size(pack_size * sizeof(long))));
 
 /// All lanes equal.
 inline Pack pack(double value) {

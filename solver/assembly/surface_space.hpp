@@ -12,7 +12,7 @@
 
 namespace esfem {
 
-/// What an integrand sees at one quadrature point of eight elements at once.
+/// What an integrand sees at one quadrature point of pack_size elements at once.
 template <int inputs>
 struct PointData {
   Pack x[3];                              ///< position on Gamma_h[x]

@@ -60,16 +60,19 @@ TEST(SymmetricMatrix, PatternHoldsThePairsOfNodesThatShareAnElement) {
 }
 
 TEST(Pack, FunctionsActLaneByLane) {
-  const Pack p = {0.1, 0.5, 1, 2, 3, 1e-3, 40, 1e10};
-  const Pack root = sqrt(p), inverse_root = inverse_sqrt(p), exponential = exp(-p), sine = sin(p),
-             cosine = cos(p);
-  for (int lane = 0; lane < pack_size; ++lane) {
-    EXPECT_DOUBLE_EQ(root[lane], std::sqrt(p[lane]));
-    EXPECT_DOUBLE_EQ(inverse_root[lane], 1 / std::sqrt(p[lane]));
-    EXPECT_DOUBLE_EQ(exponential[lane], std::exp(-p[lane]));
-    EXPECT_DOUBLE_EQ(sine[lane], std::sin(p[lane]));
-    EXPECT_DOUBLE_EQ(cosine[lane], std::cos(p[lane]));
-    EXPECT_EQ(pack(2.5)[lane], 2.5);
+  for (const double scale : {1e-3, 0.1, 1.0, 40.0, 1e10}) {
+    Pack p;
+    for (int lane = 0; lane < pack_size; ++lane) p[lane] = scale * (lane + 1);
+    const Pack root = sqrt(p), inverse_root = inverse_sqrt(p), exponential = exp(-p), sine = sin(p),
+               cosine = cos(p);
+    for (int lane = 0; lane < pack_size; ++lane) {
+      EXPECT_DOUBLE_EQ(root[lane], std::sqrt(p[lane]));
+      EXPECT_DOUBLE_EQ(inverse_root[lane], 1 / std::sqrt(p[lane]));
+      EXPECT_DOUBLE_EQ(exponential[lane], std::exp(-p[lane]));
+      EXPECT_DOUBLE_EQ(sine[lane], std::sin(p[lane]));
+      EXPECT_DOUBLE_EQ(cosine[lane], std::cos(p[lane]));
+      EXPECT_EQ(pack(2.5)[lane], 2.5);
+    }
   }
 }
 
