@@ -28,7 +28,7 @@ stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
 .PHONY: help figures check bench deps configure build build-stems test format format-check samples clean distclean \
-        tables-paper tables-check verdicts plots-check $(stems)
+        tables-check verdicts independent plots-check $(stems)
 
 help:
 	@echo "make figures       install what is missing, build, run every experiment as published, draw all figures"
@@ -52,7 +52,7 @@ $(stems): build-stems
 	+@$(call run,paper,$@,all)
 
 # Every part of the check runs, and the end says which of them failed.
-check_parts := format-check test samples tables-check verdicts plots-check
+check_parts := format-check test samples tables-check verdicts independent plots-check
 check: build
 	+@failed=""
 	for part in $(check_parts); do
@@ -127,6 +127,14 @@ plots-check:
 
 verdicts:
 	@$(if $(stems),$(BIN)/check_orders $(stems:%=results/check/%.json),echo "no experiments")
+
+# The errors of an independent implementation, on its meshes and with its quadrature rule.
+independent_meshes := $(foreach n,642 1442 2562,--mesh reference/independent/sphere_radius2_$(n).msh)
+independent:
+	@mkdir -p results/check/independent
+	$(BIN)/mcf_sphere $(independent_meshes) --quadrature conical:4 --steps 0-6 --output results/check/independent/mcf_sphere.json
+	$(BIN)/compare_tables results/check/independent/mcf_sphere.json reference/independent/table_mcf_sphere.json --from-step 3
+	$(BIN)/check_orders results/check/independent/mcf_sphere.json --reference reference/independent
 
 bench: configure
 	@$(call build_targets,--target bench_step)

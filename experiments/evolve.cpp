@@ -130,7 +130,7 @@ int main(int argc, char** argv) {
     std::string file;
     int threads = 1;
     app.add_option("config", file, "the configuration")->required()->type_name("CONFIG.json");
-    app.add_option("--threads", threads, "threads that the libraries may use")
+    app.add_option("--threads", threads, "threads that the factorisations may use")
         ->check(CLI::Range(1, 1024))
         ->capture_default_str();
     if (!parse_command_line(app, argc, argv)) return static_cast<int>(exit_done);

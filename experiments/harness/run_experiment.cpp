@@ -56,7 +56,7 @@ void add_run_options(CLI::App& app, Request& request) {
       ->type_name("FILE")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--threads", request.threads, "threads that the libraries may use")
+  app.add_option("--threads", request.threads, "threads that the factorisations may use")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str()
       ->group(group);

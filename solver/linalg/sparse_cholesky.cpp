@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include "solver/error.hpp"
@@ -19,21 +20,29 @@ void omp_set_max_active_levels(int) __attribute__((weak));
 namespace esfem {
 namespace {
 
-/// While it lives, OpenMP regions entered by this thread run on this thread alone: CHOLMOD asks for four
-/// threads by an explicit clause, which OMP_NUM_THREADS does not lower.
-class OneThread {
+/// How many threads the user allows by OMP_NUM_THREADS; 1 without it.
+int allowed_threads() {
+  const char* value = std::getenv("OMP_NUM_THREADS");
+  return value ? std::max(1, std::atoi(value)) : 1;
+}
+
+/// While it lives, BLAS and CHOLMOD use no more than the allowed threads. CHOLMOD asks OpenMP for four by an
+/// explicit clause, which OMP_NUM_THREADS does not lower; so with one thread allowed, OpenMP regions are made
+/// serial.
+class ThreadLimit {
  public:
-  OneThread() {
-    if (openblas_set_num_threads) openblas_set_num_threads(1);
-    if (!omp_set_max_active_levels || !omp_get_max_active_levels) return;
+  ThreadLimit() {
+    const int threads = allowed_threads();
+    if (openblas_set_num_threads) openblas_set_num_threads(threads);
+    if (threads > 1 || !omp_set_max_active_levels || !omp_get_max_active_levels) return;
     levels_ = omp_get_max_active_levels();
     omp_set_max_active_levels(0);
   }
-  ~OneThread() {
+  ~ThreadLimit() {
     if (levels_ >= 0) omp_set_max_active_levels(levels_);
   }
-  OneThread(const OneThread&) = delete;
-  OneThread& operator=(const OneThread&) = delete;
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
 
  private:
   int levels_ = -1;
@@ -127,7 +136,7 @@ void SparseCholesky::Cholmod::permute() {
 
 SparseCholesky::SparseCholesky(std::shared_ptr<const SparsityPattern> pattern)
     : cholmod_(std::make_unique<Cholmod>(std::move(pattern))) {
-  const OneThread one_thread;
+  const ThreadLimit one_thread;
   cholmod_->analyse();
   cholmod_->permute();
 }
@@ -135,7 +144,7 @@ SparseCholesky::SparseCholesky(std::shared_ptr<const SparsityPattern> pattern)
 SparseCholesky::~SparseCholesky() = default;
 
 void SparseCholesky::factorise(double a, const SymmetricMatrix& M, double b, const SymmetricMatrix& A) {
-  const OneThread one_thread;
+  const ThreadLimit one_thread;
   Cholmod& c = *cholmod_;
   double* values = static_cast<double*>(c.permuted->x);
   double sum = 0;
@@ -159,7 +168,7 @@ void SparseCholesky::factorise(double a, const SymmetricMatrix& M, double b, con
 }
 
 void SparseCholesky::solve(Field& rhs) {
-  const OneThread one_thread;
+  const ThreadLimit one_thread;
   Cholmod& c = *cholmod_;
   if (rhs.rows() != c.pattern->size)
     throw InputError(
