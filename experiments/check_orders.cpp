@@ -4,13 +4,14 @@
 //   check_orders results/check/mcf_sphere.json
 //   check_orders results/paper/*.json --reference reference
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "experiments/harness/command_line.hpp"
+#include "experiments/harness/experiment.hpp"
 #include "solver/analysis/claims.hpp"
 #include "solver/error.hpp"
 
@@ -108,19 +109,12 @@ Count check_table(const std::string& file, const std::string& folder) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app(help);
+  CLI::App app(help, "check_orders");
   std::vector<std::string> tables;
   std::string folder = "reference";
-  app.add_option("TABLE", tables, "tables of results (JSON)");
+  app.add_option("TABLE", tables, "tables of results (JSON)")->required();
   app.add_option("--reference", folder, "folder of the claims")->capture_default_str();
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::CallForHelp& request) {
-    return app.exit(request);
-  } catch (const CLI::ParseError& error) {
-    throw InputError(std::string(error.what()) + "; see check_orders --help");
-  }
-  if (tables.empty()) throw InputError("no table given; see check_orders --help");
+  if (!parse_command_line(app, argc, argv)) return exit_done;
 
   Count total;
   for (const std::string& file : tables) {
@@ -135,10 +129,5 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  try {
-    return run(argc, argv);
-  } catch (const std::exception& error) {
-    std::fprintf(stderr, "check_orders: %s\n", error.what());
-    return exit_usage;
-  }
+  return guarded_main([&] { return run(argc, argv); });
 }

@@ -34,14 +34,6 @@ const Row& find_row(const Table& table, int nodes, double tau) {
       format("the table has no row with %d nodes and tau = %g, but the independent one has", nodes, tau));
 }
 
-double maximum_from(const Row& row, const std::string& name, int first) {
-  const auto found = row.series.find(name);
-  if (found == row.series.end() || static_cast<int>(found->second.size()) <= first) {
-    throw InputError("row " + row.cell + " has no series " + name + format(" beyond step %d", first));
-  }
-  return *std::max_element(found->second.begin() + first, found->second.end());
-}
-
 int compare(const Table& table, const nlohmann::json& independent, int first, double tolerance,
             double floor) {
   int agreeing = 0, differing = 0;
@@ -53,7 +45,7 @@ int compare(const Table& table, const nlohmann::json& independent, int first, do
     const Row& row = find_row(table, nodes, tau);
     for (const auto& [quantity, norms] : expected.at("errors").items()) {
       for (const auto& [norm, value] : norms.items()) {
-        const Pair pair{maximum_from(row, quantity + "_" + norm, first), value.get<double>()};
+        const Pair pair{maximum_from(row, quantity, norm, first), value.get<double>()};
         if (std::max(pair.own, pair.independent) < floor) continue;  // round-off
         const bool agrees = pair.deviation() <= tolerance;
         ++(agrees ? agreeing : differing);
@@ -74,7 +66,6 @@ int main(int argc, char** argv) {
         "Compares the errors of a table with those of an independent implementation and prints both.\n"
         "Example: compare_tables table.json reference/independent/table_mcf_sphere.json --from-step 3",
         "compare_tables");
-    app.footer(exit_codes_help);
     std::string table, independent;
     int first = 0;
     double tolerance = 1e-3, floor = 1e-7;

@@ -126,7 +126,6 @@ int main(int argc, char** argv) {
         "Example: evolve reference/examples/sphere.json\n\n" +
             evolve_config_help(),
         "evolve");
-    app.footer(exit_codes_help);
     std::string file;
     int threads = 1;
     app.add_option("config", file, "the configuration")->required()->type_name("CONFIG.json");

@@ -39,7 +39,11 @@ bool parse_command_line(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::ExtrasError& error) {
     throw InputError(one_line(error.what()) + "; accepted: " + accepted_options(app) + " (see --help)");
   } catch (const CLI::ParseError& error) {
-    throw InputError(one_line(error.what()) + " (see --help)");
+    // An argument that is missing is often one that was taken for an unknown option.
+    const std::vector<std::string> unknown = app.remaining();
+    const std::string more = unknown.empty() ? "" : "; unknown: " + unknown.front();
+    throw InputError(one_line(error.what()) + more + "; accepted: " + accepted_options(app) +
+                     " (see --help)");
   }
   return true;
 }

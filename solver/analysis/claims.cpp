@@ -29,10 +29,12 @@ void read_bounds(const JsonReader& reader, const std::string& name, double& leas
 
 void read_rows(const Json& json, const std::string& where, Claim& claim) {
   const JsonReader reader(json, where + ", rows");
-  reader.accept_only({"tau", "tau_min", "tau_max", "h", "h_min", "h_max", "variant"});
+  reader.accept_only({"tau", "tau_min", "tau_max", "h", "h_min", "h_max", "variant", "from_step"});
   read_bounds(reader, "tau", claim.rows.tau_min, claim.rows.tau_max);
   read_bounds(reader, "h", claim.rows.h_min, claim.rows.h_max);
   if (reader.has("variant")) claim.variant = reader.text("variant");
+  if (reader.has("from_step")) claim.from_step = reader.integer("from_step");
+  if (claim.from_step < 0) throw InputError(reader.where() + ": 'from_step' is negative");
 }
 
 void read_presets(const JsonReader& reader, Claim& claim) {
@@ -108,6 +110,14 @@ bool is_selected(const Row& row, const Claim& claim) {
   return in_range(row, range);
 }
 
+double selected_error(const Row& row, const Claim& claim) {
+  if (claim.from_step > 0) return maximum_from(row, claim.quantity, claim.norm, claim.from_step);
+  const auto norms = row.errors.find(claim.quantity);
+  if (norms == row.errors.end() || norms->second.count(claim.norm) == 0)
+    throw InputError("cell " + row.cell + " has no error " + claim.quantity + " " + claim.norm);
+  return norms->second.at(claim.norm);
+}
+
 /// Throws InputError when the rows in range are none, of several variants, or do not all have the error.
 Selection select(const Claim& claim, const Table& table) {
   Selection selection;
@@ -115,10 +125,7 @@ Selection select(const Claim& claim, const Table& table) {
   for (const Row& row : table.rows) {
     if (!is_selected(row, claim)) continue;
     if (row.status != "ok") throw InputError("cell " + row.cell + " " + row.status);
-    const auto norms = row.errors.find(claim.quantity);
-    if (norms == row.errors.end() || norms->second.count(claim.norm) == 0)
-      throw InputError("cell " + row.cell + " has no error " + claim.quantity + " " + claim.norm);
-    const double error = norms->second.at(claim.norm);
+    const double error = selected_error(row, claim);
     if (!std::isfinite(error)) throw InputError("the error of cell " + row.cell + " is not finite");
     selection.h.push_back(row.h);
     selection.tau.push_back(row.tau);

@@ -28,14 +28,16 @@ struct Claim {
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
   RowRange rows;
+  int from_step = 0;              ///< the maximum over time is over the steps n >= this
   std::string variant;            ///< as variant(row); "" when all rows in range are of one
   std::set<std::string> presets;  ///< where it is checked; empty: everywhere
 };
 
 /// Contents of reference/<stem>.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
 /// {"paper", "place"}, "kind": "order" | "size", "quantity", "norm", "rows": {"tau", "tau_min", "tau_max",
-/// "h", "h_min", "h_max", "variant"}, "presets": [..], ...}]}; order: "variable", "expected", "tolerance",
-/// and "at_most" if wanted; size: "at_most" and/or "at_least". rows.tau and rows.h select one value.
+/// "h", "h_min", "h_max", "variant", "from_step"}, "presets": [..], ...}]}; order: "variable", "expected",
+/// "tolerance", and "at_most" if wanted; size: "at_most" and/or "at_least". rows.tau and rows.h select one
+/// value.
 struct Reference {
   std::string experiment, paper;
   std::vector<Claim> claims;

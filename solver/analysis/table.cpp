@@ -171,6 +171,14 @@ std::string variant(const Row& row) {
   return text;
 }
 
+double maximum_from(const Row& row, const std::string& quantity, const std::string& norm, int first) {
+  const auto series = row.series.find(quantity + "_" + norm);
+  if (series == row.series.end() || static_cast<int>(series->second.size()) <= first)
+    throw InputError(format("cell %s has no series %s_%s beyond step %d", row.cell.c_str(), quantity.c_str(),
+                            norm.c_str(), first));
+  return *std::max_element(series->second.begin() + first, series->second.end());
+}
+
 Json to_json(const Table& table) {
   Json json = {{"schema", schema},
                {"experiment", table.experiment},

@@ -32,6 +32,10 @@ struct Row {
 /// without such.
 std::string variant(const Row& row);
 
+/// Maximum over the steps n >= first of the error norm of quantity, from the row's series "quantity_norm".
+/// Throws InputError when the row has no such series or no such step.
+double maximum_from(const Row& row, const std::string& quantity, const std::string& norm, int first);
+
 /// A fitted order with its 95% interval.
 struct Fit {
   std::string quantity, norm, variable;  ///< variable: "h" | "tau"

@@ -70,6 +70,24 @@ Verdict check(json claim, const json& changes = json::object(), const Table& tab
   return check_claim(reference_from_json(reference({claim}), "r.json").claims.at(0), table);
 }
 
+TEST(Claims, CanLeaveOutTheFirstSteps) {
+  Table table = sample_table();
+  for (Row& row : table.rows) row.series["x_nodal_H1"] = {0.5, 0.25, 0.001, 0.002};
+  json claim = size_claim();
+  claim["rows"]["from_step"] = 2;
+  const auto verdict = [&] {
+    const json file = {{"experiment", "mcf_sphere"}, {"paper", "kll19"}, {"claims", {claim}}};
+    return check_claim(reference_from_json(file, "test").claims[0], table);
+  };
+  EXPECT_DOUBLE_EQ(verdict().value, 0.002);
+  EXPECT_TRUE(verdict().met);
+  claim["rows"]["from_step"] = 1;
+  EXPECT_DOUBLE_EQ(verdict().value, 0.25);
+  EXPECT_FALSE(verdict().met);
+  claim["rows"]["from_step"] = 4;
+  EXPECT_THAT(verdict().reason, HasSubstr("beyond step 4"));
+}
+
 TEST(Claims, AnOrderIsMetOneSidedly) {
   const Verdict verdict = check(order_claim());
   EXPECT_TRUE(verdict.met) << verdict.reason;
