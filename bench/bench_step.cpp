@@ -19,7 +19,6 @@
 #include "bench/naive_step.hpp"
 #include "experiments/harness/library_environment.hpp"
 #include "solver/assembly/surface_space.hpp"
-#include "solver/linalg/openblas.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
 #include "solver/mesh/mesh.hpp"
 
@@ -148,7 +147,6 @@ void step(benchmark::State& state, int subdivisions) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (const char* core = openblas_core_type()) setenv("OPENBLAS_CORETYPE", core, 0);
   set_library_environment(argc, argv);
   std::vector<char*> arguments(argv, argv + argc);
   std::string tabular = "--benchmark_counters_tabular=true";

@@ -7,6 +7,7 @@
 
 #include "solver/error.hpp"
 #include "solver/mesh/read.hpp"
+#include "tests/mesh/topology.hpp"
 
 using namespace esfem;
 using testing::AllOf;
@@ -49,16 +50,6 @@ Mesh together(const Mesh& a, const Mesh& b) {
   mesh.elements.conservativeResize(a.elements.rows() + b.elements.rows(), a.elements.cols());
   mesh.elements.bottomRows(b.elements.rows()) = b.elements.array() + int(a.nodes.rows());
   return mesh;
-}
-
-double corner_volume(const Mesh& mesh) {
-  double volume = 0;
-  for (int e = 0; e < mesh.elements.rows(); ++e) {
-    const Vec3 a = mesh.nodes.row(mesh.elements(e, 0)), b = mesh.nodes.row(mesh.elements(e, 1)),
-               c = mesh.nodes.row(mesh.elements(e, 2));
-    volume += a.dot(b.cross(c)) / 6;
-  }
-  return volume;
 }
 
 }  // namespace
@@ -211,7 +202,7 @@ TEST_P(InwardMesh, IsTurned) {
   EXPECT_EQ(check_closed_surface(mesh, "here"), "orientation was inward: turned");
   EXPECT_EQ(mesh.nodes, inward.nodes);
   mesh.nodes.array() -= 50;
-  EXPECT_GT(corner_volume(mesh), 1);
+  EXPECT_GT(enclosed_volume(mesh), 1);
   EXPECT_EQ(check_closed_surface(mesh, "here"), "");
   // The element maps are the old ones with the reference coordinates swapped: so refining commutes with
   // turning.

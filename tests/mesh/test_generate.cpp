@@ -10,22 +10,13 @@
 #include "solver/mesh/delaunay.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/relax.hpp"
+#include "tests/mesh/topology.hpp"
 
 using namespace esfem;
 using testing::AllOf;
 using testing::HasSubstr;
 
 namespace {
-
-bool closed_and_oriented(const Mesh& mesh) {
-  std::set<std::pair<int, int>> edges;
-  for (int e = 0; e < mesh.elements.rows(); ++e)
-    for (int i = 0; i < 3; ++i)
-      if (!edges.insert({mesh.elements(e, i), mesh.elements(e, (i + 1) % 3)}).second) return false;
-  for (const auto& [a, b] : edges)
-    if (!edges.count({b, a})) return false;
-  return true;
-}
 
 bool outward(const Mesh& mesh, const Surface& surface) {
   for (int e = 0; e < mesh.elements.rows(); ++e) {

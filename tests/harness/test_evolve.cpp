@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program evolve, as a user meets it: configurations in, files and exit codes out.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "solver/analysis/table.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+class Evolve : public testing::Test {
+ protected:
+  const std::filesystem::path folder =
+      std::filesystem::path(ESFEM_BINARY_DIR) / "test_evolve" / std::to_string(getpid());
+  const std::string nodal = (folder / "nodal.json").string(), series = (folder / "series.json").string();
+  std::string message;  ///< what the last run said on standard error
+
+  void SetUp() override { std::filesystem::create_directories(folder); }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  json config(const json& changes = json::object()) const {
+    json result = {{"flow", "mean_curvature"},
+                   {"surface", {{"name", "sphere"}, {"radius", 1}}},
+                   {"mesh", {{"subdivisions", 1}}},
+                   {"bdf", 2},
+                   {"tau", 0.01},
+                   {"steps", 4},
+                   {"output", {{"nodal", nodal}, {"series", series}}}};
+    result.merge_patch(changes);
+    return result;
+  }
+
+  int run(const json& configuration) {
+    const std::string file = (folder / "config.json").string(), errors = (folder / "errors.txt").string();
+    write_file(file, configuration.dump());
+    const std::string command = std::string(ESFEM_BINARY_DIR) + "/bin/evolve " + file + " 2>" + errors;
+    const int status = std::system(command.c_str());
+    std::ifstream stream(errors);
+    message.assign(std::istreambuf_iterator<char>(stream), {});
+    return WEXITSTATUS(status);
+  }
+};
+
+TEST_F(Evolve, WritesNodalValuesAndSeries) {
+  ASSERT_EQ(run(config()), exit_done) << message;
+  const json end = read_json(nodal), history = read_json(series);
+  EXPECT_DOUBLE_EQ(end.at("t").get<double>(), 0.04);
+  EXPECT_EQ(end.at("x").size(), 162u);
+  for (const char* key : {"v", "nu", "H"}) EXPECT_EQ(end.at(key).size(), end.at("x").size());
+  const double radius = std::sqrt(1 - 4 * 0.04);
+  EXPECT_NEAR(end.at("H")[7].get<double>(), 2 / radius, 2e-3);
+  for (const char* key :
+       {"t", "area", "volume", "willmore_energy", "max_H", "min_nu", "max_nu", "worst_angle"}) {
+    EXPECT_EQ(history.at(key).size(), 5u) << key;
+  }
+  EXPECT_NEAR(history.at("area")[4].get<double>(), 4 * std::acos(-1.0) * radius * radius, 2e-2);
+  EXPECT_TRUE(end.contains("provenance"));
+}
+
+TEST_F(Evolve, OfNoStepsIsTheInitialSurface) {
+  ASSERT_EQ(run(config({{"steps", 0}})), exit_done) << message;
+  const json start = read_json(nodal);
+  for (const json& x : start.at("x")) {
+    EXPECT_NEAR(std::hypot(x[0].get<double>(), x[1].get<double>(), x[2].get<double>()), 1, 1e-15);
+  }
+  EXPECT_EQ(start.at("H")[0].get<double>(), 2);
+}
+
+TEST_F(Evolve, VariantsChangeTheResult) {
+  ASSERT_EQ(run(config()), exit_done) << message;
+  const json plain = read_json(nodal).at("x");
+  for (const json& variant :
+       {json{{"velocity", "interpolation"}}, json{{"normalise", true}}, json{{"stabilise", 1}}}) {
+    ASSERT_EQ(run(config({{"variant", variant}})), exit_done) << message;
+    EXPECT_NE(read_json(nodal).at("x"), plain) << variant;
+  }
+  ASSERT_EQ(run(config({{"variant", {{"velocity", "ritz"}, {"normalise", false}, {"stabilise", 0}}}})),
+            exit_done);
+  EXPECT_EQ(read_json(nodal).at("x"), plain);
+}
+
+TEST_F(Evolve, StopsAtTheSingularityAndKeepsWhatItHas) {
+  // The unit sphere shrinks to a point at t = 0.25.
+  EXPECT_EQ(run(config({{"steps", 60}, {"start", "cascade"}})), exit_numerics);
+  EXPECT_THAT(message, HasSubstr("singular"));
+  EXPECT_THAT(message, HasSubstr("step "));
+  const json history = read_json(series);
+  const double last = history.at("t").back().get<double>();
+  EXPECT_GT(last, 0.2);
+  EXPECT_LT(last, 0.28);
+  EXPECT_DOUBLE_EQ(read_json(nodal).at("t").get<double>(), last);
+  EXPECT_LT(history.at("area").back().get<double>(), 2);
+}
+
+TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
+  const std::vector<std::pair<json, std::string>> bad = {
+      {{{"flow", "mean"}}, "expected mean_curvature"},
+      {{{"taw", 1}}, "unknown key 'taw'; known are"},
+      {{{"tau", -1}}, "positive step size"},
+      {{{"bdf", 6}}, "expected 1 to 5"},
+      {{{"degree", 5}}, "expected 1 to 4"},
+      {{{"steps", "many"}}, "steps"},
+      {{{"start", "warm"}}, "cascade"},
+      {{{"mesh", {{"edge_length", 0.5}}}}, "exactly one of the keys"},
+      {{{"mesh", {{"subdivisions", nullptr}, {"file", "missing.off"}}}}, "missing.off"},
+      {{{"mesh", {{"subdivisions", nullptr}, {"edge_length", 2}}}}, "edge length 2"},
+      {{{"surface", {{"name", "cube"}}}}, "sphere, ellipsoid, torus, dumbbell"},
+      {{{"quadrature", {{"gauss", 3}}}}, "known are conical, degree"},
+      {{{"variant", {{"velocity", "exact"}}}}, "ritz or interpolation"},
+      {{{"variant", {{"normalise", 1}}}}, "true or false"},
+      {{{"output", {{"vtk", "a"}}}}, "known are nodal, series"},
+  };
+  for (const auto& [changes, expected] : bad) {
+    EXPECT_EQ(run(config(changes)), exit_usage) << changes;
+    EXPECT_THAT(message, HasSubstr(expected)) << changes;
+    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << message;
+    EXPECT_FALSE(std::filesystem::exists(nodal)) << changes;
+  }
+}
+
+TEST_F(Evolve, RunsAMeshOfWhichNoExactSurfaceIsKnown) {
+  const std::string file = std::string(ESFEM_SOURCE_DIR) + "/reference/independent/sphere_radius2_162.msh";
+  json configuration = config({{"mesh", {{"subdivisions", nullptr}, {"file", file}}}, {"steps", 2}});
+  configuration.erase("surface");
+  ASSERT_EQ(run(configuration), exit_done) << message;
+  EXPECT_THAT(message, HasSubstr("computed on the discrete surface"));
+  const json history = read_json(series);
+  EXPECT_NEAR(history.at("area")[2].get<double>(), 4 * std::acos(-1.0) * (4 - 4 * 0.02), 0.2);
+}
+
+}  // namespace
+}  // namespace esfem
