@@ -41,9 +41,9 @@ bool parse_command_line(CLI::App& app, int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     // An argument that is missing is often one that was taken for an unknown option.
     const std::vector<std::string> unknown = app.remaining();
-    const std::string more = unknown.empty() ? "" : "; unknown: " + unknown.front();
-    throw InputError(one_line(error.what()) + more + "; accepted: " + accepted_options(app) +
-                     " (see --help)");
+    const std::string more =
+        unknown.empty() ? "" : "; unknown: " + unknown.front() + "; accepted: " + accepted_options(app);
+    throw InputError(one_line(error.what()) + more + " (see --help)");
   }
   return true;
 }
