@@ -2,7 +2,9 @@
 // The results table as CSV and LaTeX.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "solver/analysis/table.hpp"
@@ -11,9 +13,21 @@
 namespace esfem {
 namespace {
 
+/// Quantities in the order in which the papers name them; others follow by name.
+struct PapersOrder {
+  bool operator()(const std::pair<std::string, std::string>& a,
+                  const std::pair<std::string, std::string>& b) const {
+    const auto place = [](const std::string& quantity) {
+      const std::string names[] = {"x", "v", "nu", "H", "u", "w", "V", "z", "kappa"};
+      return std::find(std::begin(names), std::end(names), quantity) - std::begin(names);
+    };
+    return std::tuple(place(a.first), a) < std::tuple(place(b.first), b);
+  }
+};
+
 /// (quantity, norm) of all rows.
-std::set<std::pair<std::string, std::string>> error_names(const Table& table) {
-  std::set<std::pair<std::string, std::string>> names;
+std::set<std::pair<std::string, std::string>, PapersOrder> error_names(const Table& table) {
+  std::set<std::pair<std::string, std::string>, PapersOrder> names;
   for (const Row& row : table.rows)
     for (const auto& [quantity, norms] : row.errors)
       for (const auto& [norm, value] : norms) names.insert({quantity, norm});
