@@ -18,6 +18,8 @@
 // along trajectories. x and H reach order 3 in tau slowly: slopes of x between neighbouring step sizes
 // are 2.3, 2.6, 2.75 from tau = 0.1 down.
 #include <cmath>
+#include <cstdio>
+#include <utility>
 
 #include "experiments/harness/experiment.hpp"
 #include "solver/analysis/errors.hpp"
@@ -78,11 +80,18 @@ Setting resolve(const Options& options, const std::string& quadrature) {
   return setting;
 }
 
+/// The mesh of a file; what its reader changed is said on standard error.
+Mesh mesh_from_file(const std::string& file) {
+  ReadMesh found = read_mesh(file);
+  if (!found.remark.empty()) std::fprintf(stderr, "mcf_sphere: %s\n", found.remark.c_str());
+  return std::move(found.mesh);
+}
+
 /// The initial triangulation of the sphere with curved elements.
 Mesh initial_mesh(const Setting& setting, int level) {
   const Surface surface = sphere(initial_radius);
   Mesh mesh = setting.meshes.empty() ? generate_mesh(surface, edge_length(level))
-                                     : read_mesh(setting.meshes[level]).mesh;
+                                     : mesh_from_file(setting.meshes[level]);
   mesh = lagrange_mesh(mesh, setting.degree);
   project_nodes(mesh, surface);
   return mesh;
