@@ -22,4 +22,8 @@ NumericsError NumericsError::at(int step, double t) const {
   return NumericsError(format("step %d, t = %g: %s", step, t, what()));
 }
 
+SingularityError SingularityError::at(int step, double t) const {
+  return SingularityError(format("singular at t = %g (step %d): %s", t, step, what()));
+}
+
 }  // namespace esfem

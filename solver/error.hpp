@@ -22,6 +22,13 @@ struct NumericsError : std::runtime_error {
   NumericsError at(int step, double t) const;
 };
 
+/// The computed solution ends here: a singularity is near, or its elements have degenerated. What was
+/// computed before is good; a run keeps it and says "singular at t = ...".
+struct SingularityError : NumericsError {
+  using NumericsError::NumericsError;
+  SingularityError at(int step, double t) const;  ///< "singular at t = .. (step ..): .."
+};
+
 /// printf-style formatting into a std::string ("%.17g" and so on).
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 

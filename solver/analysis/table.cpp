@@ -25,9 +25,11 @@ using Json = nlohmann::json;
 const char* const schema = "esfem-table/1";
 const std::set<std::string> table_keys = {"schema",     "experiment", "paper", "parameters",
                                           "provenance", "rows",       "fits"};
-const std::set<std::string> row_keys = {
-    "cell", "level", "h", "nodes", "tau", "steps", "status", "seconds", "peak_memory_mb", "errors", "series"};
-const std::set<std::string> fit_keys = {"quantity", "norm", "variable", "order", "ci95", "rows_used"};
+const std::set<std::string> row_keys = {"cell",   "level",  "h",       "nodes",          "tau",
+                                        "steps",  "status", "seconds", "peak_memory_mb", "errors",
+                                        "values", "series"};
+const std::set<std::string> fit_keys = {"quantity", "norm",      "variable", "order",
+                                        "ci95",     "rows_used", "variant"};
 
 Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -69,6 +71,9 @@ Json to_json(const Row& row) {
   json["errors"] = Json::object();
   for (const auto& [quantity, norms] : row.errors)
     for (const auto& [norm, value] : norms) json["errors"][quantity][norm] = number_or_null(value);
+  if (!row.values.empty()) json["values"] = Json::object();
+  for (const auto& [name, value] : row.values)
+    json["values"][name] = finite_number(value, where + "value " + name);
   json["series"] = Json::object();
   for (const auto& [name, values] : row.series) {
     Json& list = json["series"][name] = Json::array();
@@ -79,12 +84,15 @@ Json to_json(const Row& row) {
 
 Json to_json(const Fit& fit) {
   const std::string where = "fit of " + fit.quantity + ", " + fit.norm + ": ";
-  return {{"quantity", fit.quantity},
-          {"norm", fit.norm},
-          {"variable", fit.variable},
-          {"order", finite_number(fit.order, where + "order")},
-          {"ci95", {finite_number(fit.ci95[0], where + "ci95"), finite_number(fit.ci95[1], where + "ci95")}},
-          {"rows_used", fit.rows_used}};
+  Json json = {
+      {"quantity", fit.quantity},
+      {"norm", fit.norm},
+      {"variable", fit.variable},
+      {"order", finite_number(fit.order, where + "order")},
+      {"ci95", {finite_number(fit.ci95[0], where + "ci95"), finite_number(fit.ci95[1], where + "ci95")}},
+      {"rows_used", fit.rows_used}};
+  if (!fit.variant.empty()) json["variant"] = fit.variant;
+  return json;
 }
 
 /// A number, or NaN for null.
@@ -129,12 +137,18 @@ Row row_from_json(const Json& json, const std::string& where) {
   row.seconds = reader.number("seconds");
   row.peak_memory_mb = reader.number("peak_memory_mb");
   row.errors = errors_from_json(reader);
+  if (reader.has("values"))
+    for (const auto& item : reader.object("values").items()) {
+      if (!item.value().is_number()) reader.wrong_type("values." + item.key(), "a number", item.value());
+      row.values[item.key()] = item.value();
+    }
   row.series = series_from_json(reader);
   for (const auto& item : json.items())
     if (row_keys.count(item.key()) == 0) row.more[item.key()] = item.value();
 
-  if (row.status != "ok" && row.status.compare(0, 8, "failed: ") != 0)
-    throw InputError(where + ": status '" + row.status + "': expected ok or failed: why");
+  if (row.status != "ok" && row.status.compare(0, 9, "singular ") != 0 && !failed(row))
+    throw InputError(where + ": status '" + row.status +
+                     "': expected ok, singular at t = ..: why, or failed: why");
   if (row.status == "ok" && !non_finite_error(row.errors).empty())
     throw InputError(where + ": status is ok, but error " + non_finite_error(row.errors) + " is null");
   return row;
@@ -154,6 +168,7 @@ Fit fit_from_json(const Json& json, const std::string& where) {
   fit.ci95[0] = interval[0];
   fit.ci95[1] = interval[1];
   fit.rows_used = reader.integer("rows_used");
+  if (reader.has("variant")) fit.variant = reader.text("variant");
   return fit;
 }
 
@@ -162,6 +177,10 @@ std::string reason() {
 }
 
 }  // namespace
+
+bool failed(const Row& row) {
+  return row.status.compare(0, 8, "failed: ") == 0;
+}
 
 std::string variant(const Row& row) {
   std::string text;

@@ -20,13 +20,17 @@ struct Row {
   int nodes = 0;
   double tau = 0;
   int steps = 0;
-  std::string status = "ok";  ///< "ok" or "failed: why"
+  std::string status = "ok";  ///< "ok", "singular at t = ..: why" (all before it is good), or "failed: why"
   double seconds = 0;
   double peak_memory_mb = 0;
-  Errors errors;                                      ///< maxima over time
+  Errors errors;                         ///< maxima over time
+  std::map<std::string, double> values;  ///< other numbers that claims are about (pinch_time, ..)
   std::map<std::string, std::vector<double>> series;  ///< "t" and what was recorded at these times
   nlohmann::json more = nlohmann::json::object();     ///< further keys of the row (variant, ...)
 };
+
+/// Whether the run of this row failed: it may not have anything but its status.
+bool failed(const Row& row);
 
 /// The variant that a row belongs to: its further keys with string values, as "key=value, key=value"; ""
 /// without such.
@@ -41,6 +45,7 @@ struct Fit {
   std::string quantity, norm, variable;  ///< variable: "h" | "tau"
   double order = 0, ci95[2] = {0, 0};
   int rows_used = 0;
+  std::string variant;  ///< of the rows, as variant(row); "" when the table has but one
 };
 
 /// Schema "esfem-table/1" of results/<preset>/<stem>.json. A cell file is a table with one row.

@@ -54,6 +54,16 @@ Quadrature conical_quadrature(int n) {
   return rule;
 }
 
+Quadrature vertex_quadrature() {
+  Quadrature rule;
+  rule.points.resize(3, 2);
+  rule.points << 0, 0, 1, 0, 0, 1;
+  rule.weights.setConstant(3, 1.0 / 6);
+  rule.degree = 1;
+  rule.name = "vertices";
+  return rule;
+}
+
 Quadrature default_quadrature(int fe_degree) {
   // For P1, P2, P3, P4: 6, 12, 16, 25 points. On spheres with h <= R/2 a 14x14 conical rule changes the error
   // of the normal's elliptic equation (H1, nodal) by 1e-13, 7e-6, 1.4e-5, 5e-6 of itself.

@@ -22,6 +22,9 @@ Quadrature symmetric_quadrature(int degree);
 /// w_s w_t (1 - t); exact to degree 2n - 2. Throws InputError unless 1 <= n <= 64.
 Quadrature conical_quadrature(int n);
 
+/// The corners with equal weights: mass lumping on P1; exact to degree 1.
+Quadrature vertex_quadrature();
+
 /// The rule for P_k elements when nothing else is asked for.
 Quadrature default_quadrature(int fe_degree);
 

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/mean_curvature_flow.hpp"
 
-#include <algorithm>
-#include <cmath>
-
-#include "solver/error.hpp"
+#include "solver/flows/regularity.hpp"
 
 namespace esfem {
 
@@ -74,25 +71,7 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   // (5.1), third line: delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
   history.bdf_sum(q, &State::x, sum_);
   next.x = (tau * next.v - sum_) / delta_0;
-  require_resolved(next);
-}
-
-void MeanCurvatureFlow::require_resolved(const State& state) const {
-  const double largest = 10;
-  const Connectivity& elements = space_.elements();
-  for (int e = 0; e < elements.rows(); ++e) {
-    double edge = 0, H = 0;
-    for (int i = 0; i < 3; ++i) {
-      edge = std::max(edge, (state.x.row(elements(e, i)) - state.x.row(elements(e, (i + 1) % 3))).norm());
-      H = std::max(H, std::abs(state.u(elements(e, i), 3)));
-    }
-    if (H * edge > largest) {
-      throw NumericsError(
-          format("singular or no longer resolved: in element %d, |H| = %g times the longest edge %g is %g; "
-                 "expected at most %g",
-                 e, H, edge, H * edge, largest));
-    }
-  }
+  require_regular(space_, next.x, next.u.col(3));
 }
 
 MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu, const Field& H) {

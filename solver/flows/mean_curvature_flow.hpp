@@ -33,14 +33,12 @@ class MeanCurvatureFlow {
   /// The space gives elements, degree and quadrature; it must outlive the flow.
   MeanCurvatureFlow(const SurfaceSpace& space, Variant variant);
 
-  /// One step of (5.1) with BDF of order q: fills next.x, next.v and next.u. Throws NumericsError when the
-  /// surface is singular or no longer resolved: |H| times the longest edge of an element beyond 10 (it is at
-  /// most 1 on elements of half the smallest radius of curvature).
+  /// One step of (5.1) with BDF of order q: fills next.x, next.v and next.u. Throws SingularityError where
+  /// the surface is singular or no longer resolved (regularity.hpp).
   void step(const History<State>& history, int q, double tau, State& next);
 
  private:
   void velocity(Field& v);
-  void require_resolved(const State& state) const;
 
   const SurfaceSpace& space_;
   Variant variant_;

@@ -28,11 +28,11 @@ void check_resolution(const Mesh& mesh, const Surface& surface, const SizeFuncti
   const double allowance = 1.01;  // the surface's own smallest radius may be rounded
   for (Eigen::Index i = 0; i < mesh.nodes.rows(); ++i) {
     const Vec3 y = mesh.nodes.row(i);
-    const double half_radius = 0.5 / largest_curvature(surface, y);
-    if (edge_length(y) > allowance * half_radius)
+    const double radius = 1 / largest_curvature(surface, y);
+    if (edge_length(y) > allowance * radius)
       throw InputError(
-          format("%s: edge length %g at (%g, %g, %g), expected at most %g, half the radius of curvature",
-                 surface.name.c_str(), edge_length(y), y[0], y[1], y[2], half_radius));
+          format("%s: edge length %g at (%g, %g, %g), expected at most %g, the radius of curvature",
+                 surface.name.c_str(), edge_length(y), y[0], y[1], y[2], radius));
   }
 }
 
@@ -123,9 +123,9 @@ void check_positive(double edge_length, const Surface& surface) {
 
 Mesh generate_mesh(const Surface& surface, double edge_length) {
   check_positive(edge_length, surface);
-  const double largest = surface.smallest_curvature_radius / 2;
+  const double largest = surface.smallest_curvature_radius;
   if (edge_length > largest * (1 + 1e-12))
-    throw InputError(format("%s: edge length %g, expected at most %g, half the smallest radius of curvature",
+    throw InputError(format("%s: edge length %g, expected at most %g, the smallest radius of curvature",
                             surface.name.c_str(), edge_length, largest));
   return generate(surface, [edge_length](const Vec3&) { return edge_length; }, {25, 0.94, 0.15});
 }

@@ -12,12 +12,12 @@ namespace esfem {
 /// Strang, SIAM Review 46, 2004) with edge flips and projection onto the surface. Deterministic to the bit.
 /// Every angle >= 25 degrees, mean radius ratio >= 0.94; vertices along a Hilbert curve. Throws InputError
 /// when edge_length is not positive or does not resolve the surface (edge_length >
-/// smallest_curvature_radius/2), NumericsError when the promised quality is missed.
+/// smallest_curvature_radius), NumericsError when the promised quality is missed.
 Mesh generate_mesh(const Surface& surface, double edge_length);
 
 /// The same with a size function (edge length wanted near a point of the surface; the largest edges there get
 /// it), for graded meshes. It must be positive, vary smoothly (a jump costs quality), and resolve the surface
-/// where it is evaluated: at most half the local radius of curvature. Every angle >= 20 degrees, no edge more
+/// where it is evaluated: at most the local radius of curvature. Every angle >= 20 degrees, no edge more
 /// than 1.25 times the one asked for.
 Mesh generate_mesh(const Surface& surface, const std::function<double(const Vec3&)>& edge_length);
 

@@ -49,6 +49,8 @@ template <class Body>
 void at_step(int n, double t, Body&& body) {
   try {
     body();
+  } catch (const SingularityError& error) {
+    throw error.at(n, t);
   } catch (const NumericsError& error) {
     throw error.at(n, t);
   }
@@ -65,6 +67,8 @@ void take_substeps(Flow& flow, History<typename Flow::State>& past, int q, doubl
     try {
       flow.step(past, std::min(m, q), tau / K, next);
       check_finite(next);
+    } catch (const SingularityError&) {
+      throw;
     } catch (const NumericsError& error) {
       throw NumericsError(format("starting substep %d of %d: %s", k, K, error.what()));
     }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/error.hpp"
+#include "solver/fe/lagrange.hpp"
 #include "solver/fe/quadrature.hpp"
 
 namespace esfem {
@@ -162,6 +163,14 @@ TEST(ConicalQuadrature, NumbersOutOfRangeAreErrors) {
 TEST(DefaultQuadrature, IntegratesTheMassMatrixOfAFlatElementExactly) {
   for (int k = 1; k <= 4; ++k) EXPECT_GE(default_quadrature(k).degree, 2 * k);
   for (int k : {0, 5}) EXPECT_THROW(default_quadrature(k), InputError);
+}
+
+TEST(VertexQuadrature, LumpsTheMassMatrixOfP1) {
+  const Quadrature rule = vertex_quadrature();
+  EXPECT_DOUBLE_EQ(rule.weights.sum(), 0.5);
+  const ShapeTable shapes = shape_functions(1, rule.points);
+  const Eigen::MatrixXd mass = shapes.value.transpose() * rule.weights.asDiagonal() * shapes.value;
+  EXPECT_TRUE(mass.isApprox(Eigen::MatrixXd::Identity(3, 3) / 6)) << mass;
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ struct Case {
   double h;
 };
 
-/// From the coarsest mesh that is accepted (half the smallest radius of curvature) to h = 0.05.
+/// From the coarsest mesh that is accepted (the smallest radius of curvature) to h = 0.05.
 std::vector<Case> cases() {
   std::vector<Case> list;
   const auto add = [&](const std::string& name, const Surface& surface,
@@ -99,10 +99,10 @@ std::vector<Case> cases() {
     for (double h : lengths) list.push_back({name + "_" + std::to_string(std::lround(1000 * h)), surface, h});
   };
   add("sphere2", sphere(2), {1, 0.5, 0.25, 0.125});
-  add("sphere1", sphere(1), {0.5, 0.2, 0.05});
-  add("ellipsoid", ellipsoid(1, 1, 0.6), {0.18, 0.1, 0.05});
-  add("torus", torus(1, 0.4), {0.2, 0.1, 0.05});
-  add("dumbbell", dumbbell(), {0.05});
+  add("sphere1", sphere(1), {1, 0.5, 0.2, 0.05});
+  add("ellipsoid", ellipsoid(1, 1, 0.6), {0.36, 0.18, 0.1, 0.05});
+  add("torus", torus(1, 0.4), {0.4, 0.2, 0.1, 0.05});
+  add("dumbbell", dumbbell(), {0.1, 0.05});
   return list;
 }
 
@@ -211,17 +211,17 @@ TEST(GenerateMesh, RefusesAnEdgeLengthThatMakesNoMesh) {
 }
 
 TEST(GenerateMesh, RefusesAnEdgeLengthThatDoesNotResolveTheSurface) {
-  const auto message = message_of<InputError>([] { generate_mesh(torus(1, 0.4), 0.21); });
-  EXPECT_THAT(message, AllOf(HasSubstr("0.21"), HasSubstr("0.2,"), HasSubstr("torus")));
-  EXPECT_THAT(message_of<InputError>([] { generate_mesh(dumbbell(), 0.06); }), HasSubstr("0.0502513"));
-  const auto everywhere = [] { generate_mesh(sphere(1), [](const Vec3&) { return 0.6; }); };
-  EXPECT_THAT(message_of<InputError>(everywhere), AllOf(HasSubstr("0.6 at ("), HasSubstr("at most 0.5")));
+  const auto message = message_of<InputError>([] { generate_mesh(torus(1, 0.4), 0.41); });
+  EXPECT_THAT(message, AllOf(HasSubstr("0.41"), HasSubstr("0.4,"), HasSubstr("torus")));
+  EXPECT_THAT(message_of<InputError>([] { generate_mesh(dumbbell(), 0.11); }), HasSubstr("0.100503"));
+  const auto everywhere = [] { generate_mesh(sphere(1), [](const Vec3&) { return 1.1; }); };
+  EXPECT_THAT(message_of<InputError>(everywhere), AllOf(HasSubstr("1.1 at ("), HasSubstr("at most 1,")));
   // Coarse where the surface is flat, though coarser than the smallest radius of curvature allows: fine.
-  const SizeFunction flat = [](const Vec3& y) { return std::min(0.3, 0.15 + 0.5 * std::pow(y[2], 2)); };
+  const SizeFunction flat = [](const Vec3& y) { return std::min(0.5, 0.3 + 0.5 * std::pow(y[2], 2)); };
   EXPECT_GT(mesh_quality(generate_mesh(ellipsoid(1, 1, 0.6), flat).elements,
                          generate_mesh(ellipsoid(1, 1, 0.6), flat).nodes)
                 .h,
-            0.2);
+            0.37);
 }
 
 TEST(GenerateMesh, SaysWhenItMissesTopologyOrQuality) {

@@ -134,6 +134,25 @@ TEST(Integrate, NonFiniteValuesAreErrorsWithStepAndTime) {
   EXPECT_EQ(failure(flow, {3, 0.1, 10, cascade}), "");
 }
 
+struct BecomesSingular : LinearOde {
+  using State = LinearOde::State;
+  double from = 0;
+  void step(const History<State>& past, int q, double tau, State& next) {
+    LinearOde::step(past, q, tau, next);
+    if (next.t >= from) throw SingularityError("element 3 is too thin");
+  }
+};
+
+TEST(Integrate, SingularitiesKeepTheirTypeAndSayWhen) {
+  BecomesSingular flow;
+  flow.from = 0.55;
+  EXPECT_EQ((failure<BecomesSingular, SingularityError>(flow, {2, 0.1, 10, exact})),
+            "singular at t = 0.6 (step 6): element 3 is too thin");
+  flow.from = 0.15;
+  EXPECT_EQ((failure<BecomesSingular, SingularityError>(flow, {3, 0.1, 10, {Start::substeps, 4}})),
+            "singular at t = 0.2 (step 2): element 3 is too thin");
+}
+
 TEST(Integrate, ExactStartNeedsAnExactSolution) {
   const auto says = [](int q, Start start) {
     return failure<LinearOde, InputError>({}, {q, 0.1, 5, start}, nullptr);

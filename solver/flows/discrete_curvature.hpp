@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/assembly/surface_space.hpp"
+#include "solver/linalg/sparse_cholesky.hpp"
+
+namespace esfem {
+
+/// Normal and mean curvature of a discrete surface of which only the nodes are known: what flows without
+/// these unknowns (Dziuk's, BGN's) are judged by.
+class DiscreteCurvature {
+ public:
+  /// The space must outlive the object.
+  explicit DiscreteCurvature(const SurfaceSpace& space);
+
+  /// Computes all three for Gamma_h[x]; no allocation after the first call.
+  void compute(const Field& x);
+
+  /// N x 3: M(x)^-1 A(x) x, the discrete H nu = -Delta x (kll19 (2.7)). Nodal.
+  const Field& kappa() const { return kappa_; }
+  /// N x 3: the L2 projection of the normals of Gamma_h[x], rescaled to unit length in the nodes.
+  const Field& nu() const { return nu_; }
+  /// N x 1: kappa . nu in the nodes; 2/R on a sphere.
+  const Field& H() const { return H_; }
+
+ private:
+  const SurfaceSpace& space_;
+  SymmetricMatrix M_, A_;
+  SparseCholesky cholesky_;
+  Field kappa_, nu_, H_;
+};
+
+}  // namespace esfem

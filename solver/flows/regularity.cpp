@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/regularity.hpp"
+
+#include <algorithm>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+namespace {
+
+/// |H| times the longest edge, largest over the corners of each element.
+void require_resolved(const Connectivity& elements, const Field& x, const Field& H) {
+  for (int e = 0; e < elements.rows(); ++e) {
+    double edge = 0, curvature = 0;
+    for (int i = 0; i < 3; ++i) {
+      edge = std::max(edge, (x.row(elements(e, i)) - x.row(elements(e, (i + 1) % 3))).norm());
+      curvature = std::max(curvature, H.row(elements(e, i)).norm());
+    }
+    if (curvature * edge > largest_curvature_size) {
+      throw SingularityError(
+          format("in element %d, |H| = %g times the longest edge %g is %g; expected at most %g", e, curvature,
+                 edge, curvature * edge, largest_curvature_size));
+    }
+  }
+}
+
+}  // namespace
+
+void require_regular(const SurfaceSpace& space, const Field& x, const Field& H) {
+  if (!x.allFinite() || !H.allFinite()) return;  // an error that check_finite of the time loop names
+  require_resolved(space.elements(), x, H);
+  const MeshQuality quality = mesh_quality(space.elements(), x);
+  if (quality.min_radius_ratio < smallest_radius_ratio) {
+    throw SingularityError(format("element %d has radius ratio %g; expected at least %g",
+                                  quality.worst_element, quality.min_radius_ratio, smallest_radius_ratio));
+  }
+  try {
+    space.area(x);
+  } catch (const NumericsError& degenerate) {
+    throw SingularityError(degenerate.what());
+  }
+}
+
+}  // namespace esfem
