@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/analysis/table.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <iterator>
 #include <limits>
 #include <set>
@@ -244,34 +241,6 @@ Json read_json(const std::string& file) {
     const auto line = 1 + std::count(content.begin(), content.begin() + position, '\n');
     throw InputError(format("%s, line %td: not JSON: %s", file.c_str(), line, error.what()));
   }
-}
-
-void write_file(const std::string& file, const std::string& text) {
-  namespace fs = std::filesystem;
-  if (file == "-") {
-    std::cout << text << std::flush;
-    if (!std::cout) throw InputError("standard output: cannot be written");
-    return;
-  }
-  // A device such as /dev/null must not be replaced by a file.
-  std::error_code ignored;
-  const bool replace = !fs::exists(file, ignored) || fs::is_regular_file(file, ignored);
-  const fs::path target(file);
-  const std::string temporary =
-      replace
-          ? (target.parent_path() / format(".%s.%d.tmp", target.filename().c_str(), int(getpid()))).string()
-          : file;
-
-  errno = 0;
-  std::ofstream stream(temporary, std::ios::binary);
-  stream << text;
-  stream.close();
-  bool written = static_cast<bool>(stream);
-  if (written && replace) written = std::rename(temporary.c_str(), file.c_str()) == 0;
-  if (written) return;
-  const std::string why = reason();
-  if (replace) std::remove(temporary.c_str());
-  throw InputError(file + ": cannot be written: " + why);
 }
 
 }  // namespace esfem

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "solver/write_file.hpp"
+
 namespace esfem {
 
 /// errors["x"]["nodal_L2"]: quantity -> norm -> value. Norms: nodal_L2, nodal_H1, nodal_H1_semi, lifted_L2,
@@ -66,9 +68,6 @@ Table table_from_json(const nlohmann::json& json, const std::string& source);
 
 /// Reads and parses a JSON file; InputError with file and line when it is missing or not JSON.
 nlohmann::json read_json(const std::string& file);
-/// Writes via a temporary name in the same folder and a rename, so that no reader ever sees half a file.
-/// "-" is standard output; devices and pipes are written directly. InputError when it cannot be written.
-void write_file(const std::string& file, const std::string& text);
 
 /// The table as CSV (one line a row, one column an error), and as LaTeX (booktabs) with EOC columns as the
 /// papers print them: one block per mesh with EOC in tau between neighbouring step sizes, and one per step
