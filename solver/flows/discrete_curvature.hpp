@@ -28,6 +28,7 @@ class DiscreteCurvature {
   SymmetricMatrix M_, A_;
   SparseCholesky cholesky_;
   Field kappa_, nu_, H_;
+  Field kappa_and_nu_;  ///< right-hand sides and solutions of the six systems with M
 };
 
 }  // namespace esfem

@@ -42,4 +42,13 @@ void require_regular(const SurfaceSpace& space, const Field& x, const Field& H) 
   }
 }
 
+void assemble_regular(const SurfaceSpace& space, const Field& x_tilde, SymmetricMatrix& M,
+                      SymmetricMatrix& A) {
+  try {
+    space.assemble(x_tilde, M, A);
+  } catch (const NumericsError& degenerate) {
+    throw SingularityError(std::string("on the extrapolated surface, ") + degenerate.what());
+  }
+}
+
 }  // namespace esfem

@@ -15,4 +15,9 @@ constexpr double smallest_radius_ratio = 1e-3;  ///< of an element, 2 (inradius)
 /// |H|).
 void require_regular(const SurfaceSpace& space, const Field& x, const Field& H);
 
+/// M(x~) and A(x~) on the extrapolated surface, which can be degenerate before the computed one is:
+/// SingularityError there, too.
+void assemble_regular(const SurfaceSpace& space, const Field& x_tilde, SymmetricMatrix& M,
+                      SymmetricMatrix& A);
+
 }  // namespace esfem

@@ -3,76 +3,66 @@
 
 #include <cmath>
 
-#include "solver/analysis/errors.hpp"
-#include "solver/analysis/table.hpp"
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
-#include "solver/mesh/read.hpp"
-#include "solver/time/integrate.hpp"
+#include "tests/flows/reference_case.hpp"
 
 namespace esfem {
 namespace {
-
-const std::string independent = std::string(ESFEM_SOURCE_DIR) + "/reference/independent/";
 
 using State = MeanCurvatureFlow::State;
 using Variant = MeanCurvatureFlow::Variant;
 
 State run_sphere(const Mesh& mesh, const Quadrature& rule, const TimeGrid& grid, Variant variant = {}) {
   const ExactEvolution exact = shrinking_sphere(2);
-  const auto state = [&](double t) { return exact_mean_curvature_state(exact, mesh.nodes, t); };
+  const std::function<State(double)> state = [&](double t) {
+    return exact_mean_curvature_state(exact, mesh.nodes, t);
+  };
   const SurfaceSpace space(mesh, rule);
   MeanCurvatureFlow flow(space, variant);
-  State last;
-  integrate(flow, grid, state(0), std::function<State(double)>(state),
-            [&](int, const State& now) { last = now; });
-  return last;
+  return last_state(flow, grid, state(0), state);
 }
 
-/// The nodal values of a reference file, as N x c.
-Field nodal(const nlohmann::json& rows) {
-  Field field(rows.size(), rows[0].size());
-  for (size_t i = 0; i < rows.size(); ++i) {
-    for (size_t l = 0; l < rows[i].size(); ++l) field(i, l) = rows[i][l].get<double>();
-  }
-  return field;
-}
-
-double deviation(const State& state, const nlohmann::json& expected) {
-  return std::max({(state.x - nodal(expected["x"])).cwiseAbs().maxCoeff(),
-                   (state.v - nodal(expected["v"])).cwiseAbs().maxCoeff(),
-                   (state.u - nodal(expected["u"])).cwiseAbs().maxCoeff()});
-}
-
-State run_reference_case(const nlohmann::json& reference, const Quadrature& rule, Variant variant = {}) {
-  const Mesh mesh = read_mesh(independent + reference["mesh"].get<std::string>()).mesh;
-  const TimeGrid grid{reference["q"].get<int>(), reference["tau"].get<double>(),
-                      reference["nsteps"].get<int>(), parse_start(reference["start"].get<std::string>())};
-  return run_sphere(mesh, rule, grid, variant);
+State run_dumbbell(const Mesh& mesh, const Quadrature& rule, const TimeGrid& grid) {
+  const SurfaceSpace space(mesh, rule);
+  MeanCurvatureFlow flow(space, {});
+  return last_state(flow, grid, mean_curvature_state_on(dumbbell(), mesh.nodes));
 }
 
 TEST(MeanCurvatureFlow, AgreesWithTheIndependentImplementation) {
   for (const std::string name : {"mcf_kll_bdf3", "mcf_kll_bdf3_cascade"}) {
-    const auto reference = read_json(independent + name + ".json");
-    EXPECT_LT(deviation(run_reference_case(reference, conical_quadrature(12)), reference["nodal"]), 1e-11)
-        << name;
+    const ReferenceCase reference(name);
+    const auto deviation = [&](int points, Variant variant = {}) {
+      return reference.deviation(
+          run_sphere(reference.mesh, conical_quadrature(points), reference.grid, variant));
+    };
+    EXPECT_LT(deviation(12), 1e-11) << name;
     // A rule that is too weak, or another variant of the scheme, is seen.
-    EXPECT_GT(deviation(run_reference_case(reference, conical_quadrature(4)), reference["nodal"]), 1e-8)
-        << name;
+    EXPECT_GT(deviation(4), 1e-8) << name;
+    Variant interpolation;
+    interpolation.velocity = Variant::interpolation;
+    Variant normalise;
+    normalise.normalise = true;
+    Variant stabilise;
+    stabilise.stabilise = 1;
+    for (const Variant& variant : {interpolation, normalise, stabilise}) {
+      EXPECT_GT(deviation(12, variant), 1e-7) << name;
+      EXPECT_LT(deviation(12, variant), 0.02) << name;
+    }
   }
-  const auto reference = read_json(independent + "mcf_kll_bdf3.json");
-  Variant interpolation;
-  interpolation.velocity = Variant::interpolation;
-  Variant normalise;
-  normalise.normalise = true;
-  Variant stabilise;
-  stabilise.stabilise = 1;
-  for (const Variant& variant : {interpolation, normalise, stabilise}) {
-    const double distance =
-        deviation(run_reference_case(reference, conical_quadrature(12), variant), reference["nodal"]);
-    EXPECT_GT(distance, 1e-7);
-    EXPECT_LT(distance, 0.02);
-  }
+}
+
+TEST(MeanCurvatureFlow, AgreesWithTheIndependentImplementationOnTheDumbbell) {
+  const ReferenceCase reference("mcf_dumbbell_kll_bdf2");
+  const auto deviation = [&](int points, const TimeGrid& grid) {
+    return reference.deviation(run_dumbbell(reference.mesh, conical_quadrature(points), grid));
+  };
+  EXPECT_LT(deviation(12, reference.grid), 1e-11);
+  EXPECT_LT(deviation(8, reference.grid), 1e-6);
+  EXPECT_GT(deviation(4, reference.grid), 1e-5);
+  TimeGrid substeps = reference.grid;
+  substeps.start = parse_start("substeps:16");
+  EXPECT_GT(deviation(12, substeps), 1e-3);
 }
 
 TEST(MeanCurvatureFlow, NormalisedNormalsHaveUnitLength) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/dziuk_flow.hpp"
+
+#include "solver/flows/discrete_curvature.hpp"
+#include "solver/flows/regularity.hpp"
+
+namespace esfem {
+
+DziukFlow::DziukFlow(const SurfaceSpace& space)
+    : space_(space), M_(space.matrix()), A_(space.matrix()), cholesky_(space.pattern()) {}
+
+void DziukFlow::step(const History<State>& history, int q, double tau, State& next) {
+  const double delta_0 = history.delta(q)[0];
+
+  // (5.2)
+  history.extrapolate(q, &State::x, x_tilde_);
+  assemble_regular(space_, x_tilde_, M_, A_);
+
+  // (3.6) with BDF: (delta_0/tau M(x̃) + A(x̃)) x = -M(x̃) 1/tau sum_{j>=1} delta_j x^{n-j}
+  history.bdf_sum(q, &State::x, sum_);
+  M_.multiply(sum_, next.x);
+  next.x /= -tau;
+  cholesky_.factorise(delta_0 / tau, M_, 1.0, A_);
+  cholesky_.solve(next.x);
+
+  next.v = (delta_0 * next.x + sum_) / tau;
+  require_regular(space_, next.x, next.v);
+}
+
+DziukFlow::State dziuk_state_on(const SurfaceSpace& space, const Field& x) {
+  DiscreteCurvature curvature(space);
+  curvature.compute(x);
+  return {0, x, -curvature.kappa()};
+}
+
+DziukFlow::State exact_dziuk_state(const ExactEvolution& exact, const Field& x0, double t) {
+  const Field x = exact.trajectories(x0, t);
+  return {t, x, exact.nodal_values(x, t).middleCols(exact.column("v"), 3)};
+}
+
+}  // namespace esfem

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "solver/analysis/table.hpp"
+#include "solver/mesh/read.hpp"
+#include "solver/time/integrate.hpp"
+
+namespace esfem {
+
+/// The state at the end of a run.
+template <class Flow>
+typename Flow::State last_state(Flow& flow, const TimeGrid& grid, const typename Flow::State& initial,
+                                const std::function<typename Flow::State(double t)>& exact_state = nullptr) {
+  typename Flow::State last;
+  integrate(flow, grid, initial, exact_state, [&](int, const typename Flow::State& now) { last = now; });
+  return last;
+}
+
+/// A run of the independent implementation, from a file of reference/independent.
+struct ReferenceCase {
+  explicit ReferenceCase(const std::string& name)
+      : json(read_json(folder() + name + ".json")),
+        mesh(read_mesh(folder() + json["mesh"].get<std::string>()).mesh),
+        grid{json["q"].get<int>(), json["tau"].get<double>(), json["nsteps"].get<int>(),
+             parse_start(json["start"].get<std::string>())} {}
+
+  /// The nodal values of a quantity at the end, N x c.
+  Field nodal(const std::string& quantity) const {
+    const nlohmann::json& rows = json["nodal"][quantity];
+    Field field(rows.size(), rows[0].size());
+    for (size_t i = 0; i < rows.size(); ++i) {
+      for (size_t l = 0; l < rows[i].size(); ++l) field(i, l) = rows[i][l].get<double>();
+    }
+    return field;
+  }
+
+  /// The largest difference of a nodal value.
+  template <class State>
+  double deviation(const State& state) const {
+    double largest = 0;
+    for (const NamedField<State>& field : State::fields) {
+      const Field difference = state.*field.member - nodal(field.name);
+      largest = std::max(largest, difference.cwiseAbs().maxCoeff());
+    }
+    return largest;
+  }
+
+  nlohmann::json json;
+  Mesh mesh;
+  TimeGrid grid;
+
+ private:
+  static std::string folder() { return std::string(ESFEM_SOURCE_DIR) + "/reference/independent/"; }
+};
+
+}  // namespace esfem
