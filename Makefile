@@ -132,7 +132,7 @@ verdicts:
 independent_meshes := $(foreach n,642 1442 2562,--mesh reference/independent/sphere_radius2_$(n).msh)
 independent:
 	@mkdir -p results/check/independent
-	$(BIN)/mcf_sphere $(independent_meshes) --quadrature conical:4 --steps 0-6 --output results/check/independent/mcf_sphere.json
+	$(BIN)/mcf_sphere --flow mean_curvature $(independent_meshes) --quadrature conical:4 --steps 0-6 --output results/check/independent/mcf_sphere.json
 	$(BIN)/compare_tables results/check/independent/mcf_sphere.json reference/independent/table_mcf_sphere.json --from-step 3
 	$(BIN)/check_orders results/check/independent/mcf_sphere.json --reference reference/independent
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Time of one step of kll19 (5.1), linearly implicit BDF3 on P2 icospheres of radius 2, by phase, and its
 // ratio to a naive step. One row per mesh, N = 2.5k, 10k, 41k, 164k; milliseconds of CPU time of all threads,
-// medians.
+// medians. Then a whole step of the flow, loads included, on the dumbbell of kll19 §13.2 with 10.5k nodes, as
+// a ratio to the two factorisations and solves in it.
 //
 //   bench_step                                   all sizes; the naive step up to N = 41k
 //   bench_step --benchmark_filter=nodes:163842   peak memory of one size alone (column peak_MiB)
@@ -19,8 +20,9 @@
 #include "bench/naive_step.hpp"
 #include "experiments/harness/library_environment.hpp"
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
-#include "solver/mesh/mesh.hpp"
+#include "solver/mesh/generate.hpp"
 
 namespace {
 
@@ -144,6 +146,43 @@ void step(benchmark::State& state, int subdivisions) {
   state.counters["ratio"] = median(naive_samples) / total;
 }
 
+/// MeanCurvatureFlow::step as a run calls it, and what its factorisations and solves take of it.
+void flow_step(benchmark::State& state) {
+  Mesh mesh = lagrange_mesh(generate_mesh(dumbbell(), 0.0902), 2);
+  project_nodes(mesh, dumbbell());
+  const SurfaceSpace space(mesh);
+  MeanCurvatureFlow flow(space, {});
+  History<MeanCurvatureFlow::State> history(2);
+  MeanCurvatureFlow::State next = mean_curvature_state_on(dumbbell(), mesh.nodes);
+  for (int i = 0; i < 2; ++i) {
+    next.t = i * tau;
+    history.push(next);
+  }
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(mesh.nodes, M, A);
+  SparseCholesky cholesky(space.pattern());
+
+  Phases phases;
+  for (auto _ : state) {
+    const double begin = cpu_ms();
+    phases.start();
+    flow.step(history, 2, 1e-5, next);
+    phases.end("step");
+    Field v = next.v, u = next.u;
+    phases.start();
+    cholesky.factorise(1, M, 1, A);
+    cholesky.solve(v);
+    cholesky.factorise(1.5 / 1e-5, M, 1, A);
+    cholesky.solve(u);
+    phases.end("factor_solve");
+    state.SetIterationTime((cpu_ms() - begin) / 1e3);
+  }
+  state.counters["nodes"] = space.dofs();
+  state.counters["step"] = phases["step"];
+  state.counters["factor_solve"] = phases["factor_solve"];
+  state.counters["step_over_factor_solve"] = phases["step"] / phases["factor_solve"];
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -162,5 +201,9 @@ int main(int argc, char** argv) {
         ->UseManualTime()
         ->Iterations(subdivisions < 5 ? 20 : 5);
   }
+  benchmark::RegisterBenchmark("flow_step/dumbbell", flow_step)
+      ->Unit(benchmark::kMillisecond)
+      ->UseManualTime()
+      ->Iterations(20);
   benchmark::RunSpecifiedBenchmarks();
 }

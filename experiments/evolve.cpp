@@ -5,25 +5,28 @@
 // Sample runs:  build/bin/evolve reference/examples/sphere.json
 //               build/bin/evolve reference/examples/dumbbell.json
 //
-// Writes the nodal values at the end and a time series, as the file says; `evolve --help` explains its keys.
+// Writes the nodal values at the end, a time series and snapshots, as the file says; `evolve --help` explains
+// its keys.
 #include <unistd.h>
 
 #include <cstdio>
+#include <optional>
 
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/evolve_config.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/library_environment.hpp"
 #include "experiments/harness/provenance.hpp"
-#include "solver/analysis/diagnostics.hpp"
+#include "solver/analysis/run_recorder.hpp"
 #include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
+#include "solver/flows/bgn_flow.hpp"
+#include "solver/flows/dziuk_flow.hpp"
 
 namespace {
 
 using namespace esfem;
 using nlohmann::json;
-using State = MeanCurvatureFlow::State;
 
 /// N x c nodal values as [[..], ..], or [..] for one component.
 json rows(const Field& field) {
@@ -39,80 +42,97 @@ json rows(const Field& field) {
   return list;
 }
 
-/// What a run has computed so far: written at its end, and when it fails.
-struct Results {
-  State last;
-  Series series;
-};
-
-void write(const EvolveConfig& config, const Results& results, const json& config_json, const json& origin) {
+void write(const EvolveConfig& config, RunRecorder& recorder, const std::string& status,
+           const json& config_json, const json& origin) {
   if (!config.series.empty()) {
-    json series = results.series;
+    json series = recorder.series();
+    series["status"] = status;
     series["config"] = config_json;
     series["provenance"] = origin;
     write_file(config.series, series.dump(1) + "\n");
   }
   if (!config.nodal.empty()) {
-    const State& state = results.last;
-    const json nodal = {{"t", state.t},
-                        {"x", rows(state.x)},
-                        {"v", rows(state.v)},
-                        {"nu", rows(state.u.leftCols(3))},
-                        {"H", rows(state.u.rightCols(1))},
-                        {"config", config_json},
-                        {"provenance", origin}};
+    const RunRecorder::Surface& newest = recorder.newest();
+    json nodal = {{"t", newest.t}, {"x", rows(newest.x)}, {"config", config_json}, {"provenance", origin}};
+    for (const PointField& field : newest.fields) nodal[field.name] = rows(field.values);
     write_file(config.nodal, nodal.dump() + "\n");
   }
+  recorder.finish();
 }
 
 void say(const std::string& line) {
   std::fprintf(stderr, "evolve: %s\n", line.c_str());
 }
 
-State initial_state(const EvolveConfig& config, const SurfaceSpace& space) {
-  if (config.surface) return mean_curvature_state_on(*config.surface, config.mesh.nodes);
-  say("no exact surface is given: nu and H at the start are computed on the discrete surface");
-  return discrete_mean_curvature_state(space, config.mesh.nodes);
-}
+template <class State>
+using ExactState = std::function<State(double)>;
 
-/// The exact solution, where one is known.
-std::function<State(double)> exact_solution(const EvolveConfig& config) {
-  if (!config.surface || config.surface->name != "sphere") return {};
-  const ExactEvolution exact = shrinking_sphere(config.surface->parameters.at("radius"));
-  return [exact, x0 = config.mesh.nodes](double t) { return exact_mean_curvature_state(exact, x0, t); };
-}
-
-void run_mean_curvature(const EvolveConfig& config, Results& results) {
-  const SurfaceSpace space(config.mesh, config.rule);
-  const std::function<State(double)> exact = exact_solution(config);
+/// Integrates from `initial` and records every step. exact: the exact solution, where one is known.
+template <class Flow, class State = typename Flow::State>
+void run_flow(Flow flow, const EvolveConfig& config, const State& initial, const ExactState<State>& exact,
+              RunRecorder& recorder) {
   TimeGrid grid = config.grid;
   if (!config.start_given && !exact) grid.start = parse_start("substeps:16");
-  MeanCurvatureFlow flow(space, config.mean_curvature);
   const bool terminal = isatty(STDERR_FILENO);
-  integrate(flow, grid, initial_state(config, space), exact, [&](int n, const State& state) {
-    record_geometry(space, state.t, state.x, results.series);
-    record_curvature(space, state.x, state.u.leftCols(3), state.u.rightCols(1), results.series);
-    results.last = state;
+  integrate(flow, grid, initial, exact, [&](int n, const State& state) {
+    recorder.record(n, state.t, state.x, point_fields(state));
     if (terminal)
       std::fprintf(stderr, "\rstep %d of %d, t = %g%s", n, grid.steps, state.t, n == grid.steps ? "\n" : "");
   });
+}
+
+/// A sphere has an exact solution under mean curvature flow.
+std::optional<ExactEvolution> exact_solution(const EvolveConfig& config) {
+  if (!config.surface || config.surface->name != "sphere") return {};
+  return shrinking_sphere(config.surface->parameters.at("radius"));
+}
+
+void run_mean_curvature(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
+  using State = MeanCurvatureFlow::State;
+  const Field& x0 = config.mesh.nodes;
+  const std::optional<ExactEvolution> exact = exact_solution(config);
+  ExactState<State> exact_state;
+  if (exact) exact_state = [&](double t) { return exact_mean_curvature_state(*exact, x0, t); };
+  if (!config.surface)
+    say("no exact surface is given: nu and H at the start are computed on the discrete surface");
+  run_flow(MeanCurvatureFlow(space, config.mean_curvature), config,
+           config.surface ? mean_curvature_state_on(*config.surface, x0)
+                          : discrete_mean_curvature_state(space, x0),
+           exact_state, recorder);
+}
+
+void run_dziuk(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
+  using State = DziukFlow::State;
+  const Field& x0 = config.mesh.nodes;
+  const std::optional<ExactEvolution> exact = exact_solution(config);
+  ExactState<State> exact_state;
+  if (exact) exact_state = [&](double t) { return exact_dziuk_state(*exact, x0, t); };
+  if (config.grid.order > 3) say(format("Dziuk's scheme is unstable with BDF%d", config.grid.order));
+  run_flow(DziukFlow(space), config, dziuk_state_on(space, x0), exact_state, recorder);
+}
+
+void run_bgn(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
+  run_flow(BgnFlow(space), config, bgn_state_on(space, config.mesh.nodes), {}, recorder);
 }
 
 int evolve(const std::string& file, const json& origin) {
   const json config_json = read_json(file);
   const EvolveConfig config = evolve_config(config_json, file);
   if (!config.mesh_remark.empty()) say(config.mesh_remark);
-  Results results;
+  const SurfaceSpace space(config.mesh, config.rule);
+  RunRecorder recorder(space, config.snapshots);
   try {
-    run_mean_curvature(config, results);
-  } catch (const NumericsError&) {
-    if (results.last.x.size() > 0) {
-      write(config, results, config_json, origin);
-      say(format("what was computed up to t = %g is written", results.last.t));
+    if (config.flow == "mean_curvature") run_mean_curvature(config, space, recorder);
+    if (config.flow == "dziuk") run_dziuk(config, space, recorder);
+    if (config.flow == "bgn") run_bgn(config, space, recorder);
+  } catch (const NumericsError& error) {
+    if (!recorder.empty()) {
+      write(config, recorder, error.what(), config_json, origin);
+      say(format("what was computed up to t = %g is written", recorder.newest().t));
     }
     throw;
   }
-  write(config, results, config_json, origin);
+  write(config, recorder, "ok", config_json, origin);
   return exit_done;
 }
 

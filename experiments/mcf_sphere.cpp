@@ -5,13 +5,15 @@
 // Sample runs:  build/bin/mcf_sphere --preset check --output sphere.json
 //               build/bin/mcf_sphere --preset check --levels 0 --steps 2-4 --bdf 2 --start substeps:16
 //               build/bin/mcf_sphere --preset check --degree 3 --levels 0 --steps 3-5
+//               build/bin/mcf_sphere --preset check --flow dziuk --bdf 2
 //
 // Writes:       results/paper/mcf_sphere.{json,csv,tex}, from which plots/mcf_sphere.py draws
 //               figures/kll19/fig13_1 (error over tau) and fig13_2 (error over h)
 //
 // The sphere of radius R_0 = 2 shrinks by v = -H nu on [0, 0.6], R(t) = sqrt(R_0² - 4t). The discretisation
 // is (5.1): quadratic evolving surface finite elements and BDF3, exact starting values, tau = 0.2 2^-k and h
-// near 0.5 2^(-j/2).
+// near 0.5 2^(-j/2). Beside it, in the same table, runs Dziuk's scheme (3.6), with nu and H from kappa = M^-1
+// A x.
 //
 // Expected orders (Theorem 6.1): tau³ + h² in L^infinity(H1) for x, v, nu, H. On the sphere all four
 // superconverge in space (order 3 in H1, 4 for H), and nu shows no order in time, because it is constant
@@ -24,6 +26,8 @@
 #include "experiments/harness/experiment.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
+#include "solver/flows/discrete_curvature.hpp"
+#include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
@@ -50,8 +54,16 @@ struct Setting {
   int degree, bdf;
   std::vector<int> levels, steps;
   Start start;
-  std::vector<std::string> meshes;
+  std::vector<std::string> meshes, flows;
   Quadrature rule;
+};
+
+const std::vector<std::string> known_flows = {"mean_curvature", "dziuk"};
+
+/// Options of this experiment alone.
+struct OwnOptions {
+  std::string quadrature;
+  std::vector<std::string> flows = known_flows;
 };
 
 std::vector<int> range(int first, int last) {
@@ -60,7 +72,7 @@ std::vector<int> range(int first, int last) {
   return list;
 }
 
-Setting resolve(const Options& options, const std::string& quadrature) {
+Setting resolve(const Options& options, const OwnOptions& own) {
   const bool paper = options.preset == "paper";
   Setting setting;
   setting.degree = options.degree.value_or(2);
@@ -70,7 +82,9 @@ Setting resolve(const Options& options, const std::string& quadrature) {
   setting.levels = options.levels.value_or(meshes ? range(0, meshes - 1) : paper ? range(0, 4) : range(0, 2));
   setting.steps = options.steps.value_or(paper ? range(0, 7) : range(2, 6));
   setting.start = options.start.value_or(Start{});
-  setting.rule = quadrature.empty() ? default_quadrature(setting.degree) : parse_quadrature(quadrature);
+  setting.rule =
+      own.quadrature.empty() ? default_quadrature(setting.degree) : parse_quadrature(own.quadrature);
+  setting.flows = own.flows;
   for (int level : setting.levels) {
     if (meshes && level >= meshes) {
       throw InputError(
@@ -97,22 +111,45 @@ Mesh initial_mesh(const Setting& setting, int level) {
   return mesh;
 }
 
-Row run(const Setting& setting, int level, int k) {
+/// x, v, nu, H side by side, the columns of the error tables.
+Field columns(const MeanCurvatureFlow::State& state, DiscreteCurvature&) {
+  return table_columns(state);
+}
+Field columns(const DziukFlow::State& state, DiscreteCurvature& curvature) {
+  curvature.compute(state.x);
+  Field all(state.x.rows(), 10);
+  all << state.x, state.v, curvature.nu(), curvature.H();
+  return all;
+}
+
+/// Runs the flow and records the errors of each step.
+template <class Flow, class ExactState>
+void run_flow(Flow flow, const SurfaceSpace& space, const TimeGrid& grid, const ExactState& exact_state,
+              ErrorRecorder& errors) {
+  using State = typename Flow::State;
+  DiscreteCurvature curvature(space);
+  integrate(flow, grid, exact_state(0.0), std::function<State(double)>(exact_state),
+            [&](int, const State& state) { errors.record(state.t, columns(state, curvature)); });
+}
+
+Row run(const Setting& setting, const std::string& flow, int level, int k) {
   // 1. The initial surface and the finite element space on it.
   const Mesh mesh = initial_mesh(setting, level);
   const SurfaceSpace space(mesh, setting.rule);
 
   // 2. The exact solution: starting values and what the errors are measured against.
   const ExactEvolution exact = shrinking_sphere(initial_radius);
-  const auto exact_state = [&](double t) { return exact_mean_curvature_state(exact, mesh.nodes, t); };
+  ErrorRecorder errors(space, exact, mesh.nodes);
 
   // 3. The time steps, with the errors of each.
-  MeanCurvatureFlow flow(space, {});
-  ErrorRecorder errors(space, exact, mesh.nodes);
   const TimeGrid grid{setting.bdf, step_size(k), step_count(k), setting.start};
-  integrate(
-      flow, grid, exact_state(0), std::function<MeanCurvatureFlow::State(double)>(exact_state),
-      [&](int, const MeanCurvatureFlow::State& state) { errors.record(state.t, table_columns(state)); });
+  if (flow == "dziuk") {
+    const auto state = [&](double t) { return exact_dziuk_state(exact, mesh.nodes, t); };
+    run_flow(DziukFlow(space), space, grid, state, errors);
+  } else {
+    const auto state = [&](double t) { return exact_mean_curvature_state(exact, mesh.nodes, t); };
+    run_flow(MeanCurvatureFlow(space, {}), space, grid, state, errors);
+  }
 
   // 4. The row of the table.
   Row row;
@@ -123,6 +160,7 @@ Row run(const Setting& setting, int level, int k) {
   row.steps = grid.steps;
   row.errors = errors.maxima();
   row.series = errors.series();
+  row.more["flow"] = flow;
   return row;
 }
 
@@ -136,14 +174,18 @@ double estimated_cost(const Setting& setting, int level, int k) {
 
 std::vector<Cell> cells(const Setting& setting) {
   std::vector<Cell> list;
-  for (int level : setting.levels) {
-    for (int k : setting.steps) {
-      Cell cell{format("h%d_tau%d", level, k), estimated_cost(setting, level, k),
-                [=] { return run(setting, level, k); }};
-      cell.planned.level = level;
-      cell.planned.tau = step_size(k);
-      cell.planned.steps = step_count(k);
-      list.push_back(cell);
+  for (const std::string& flow : setting.flows) {
+    const std::string prefix = flow == "dziuk" ? "dziuk_" : "";
+    for (int level : setting.levels) {
+      for (int k : setting.steps) {
+        Cell cell{format("%sh%d_tau%d", prefix.c_str(), level, k), estimated_cost(setting, level, k),
+                  [=](const std::string&) { return run(setting, flow, level, k); }};
+        cell.planned.level = level;
+        cell.planned.tau = step_size(k);
+        cell.planned.steps = step_count(k);
+        cell.planned.more["flow"] = flow;
+        list.push_back(cell);
+      }
     }
   }
   return list;
@@ -161,13 +203,14 @@ nlohmann::json parameters(const Setting& setting, const std::string& preset) {
           {"bdf", setting.bdf},
           {"start", to_string(setting.start)},
           {"quadrature", setting.rule.name},
-          {"meshes", meshes}};
+          {"meshes", meshes},
+          {"flows", setting.flows}};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string quadrature;
+  OwnOptions own;
   Experiment experiment;
   experiment.stem = "mcf_sphere";
   experiment.paper = "kll19";
@@ -179,14 +222,19 @@ int main(int argc, char** argv) {
       "lengths 0.5 2^(-j/2), level j = 0..4. Lengths and times have no units: v = -H nu.\n\n"
       "Example: mcf_sphere --preset check --levels 0 --steps 2-4 --output table.json";
   experiment.add_options = [&](CLI::App& app) {
-    app.add_option("--quadrature", quadrature,
+    app.add_option("--flow", own.flows, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6); both unless given")
+        ->check(CLI::IsMember(known_flows))
+        ->delimiter(',')
+        ->type_name("LIST")
+        ->group("Method (not given: as in the preset)");
+    app.add_option("--quadrature", own.quadrature,
                    "rule on each element: conical:N (N x N Gauss points) | degree:D (symmetric)")
         ->type_name("RULE")
         ->group("Method (not given: as in the preset)");
   };
-  experiment.cells = [&](const Options& options) { return cells(resolve(options, quadrature)); };
+  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {
-    return parameters(resolve(options, quadrature), options.preset);
+    return parameters(resolve(options, own), options.preset);
   };
   experiment.fit_range.tau_max = 0.05;
   return run_experiment(experiment, argc, argv);

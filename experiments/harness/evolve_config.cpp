@@ -14,6 +14,14 @@ namespace {
 
 using nlohmann::json;
 
+const std::set<std::string> known_flows = {"mean_curvature", "dziuk", "bgn"};
+
+std::string listed(const std::set<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
 int integer_within(const JsonReader& reader, const std::string& key, int otherwise, int low, int high) {
   const int value = reader.has(key) ? reader.integer(key) : otherwise;
   if (value < low || value > high) {
@@ -27,10 +35,8 @@ int integer_within(const JsonReader& reader, const std::string& key, int otherwi
 std::string only_key(const JsonReader& reader, const json& object, const std::set<std::string>& known) {
   reader.accept_only(known);
   if (object.size() == 1) return object.begin().key();
-  std::string list;
-  for (const std::string& key : known) list += (list.empty() ? "" : ", ") + key;
   throw InputError(reader.where() + ": found " + object.dump() + "; expected exactly one of the keys " +
-                   list);
+                   listed(known));
 }
 
 /// A subdivided icosahedron, as it is on a sphere, stretched for an ellipsoid.
@@ -65,9 +71,10 @@ void make_mesh(const json& description, const std::string& where, int degree, Ev
   if (config.surface) project_nodes(config.mesh, *config.surface);
 }
 
-TimeGrid time_grid(const JsonReader& reader) {
+TimeGrid time_grid(const JsonReader& reader, const std::string& flow) {
   TimeGrid grid;
-  grid.order = integer_within(reader, "bdf", 3, 1, max_bdf_order);
+  const bool one_step = flow == "bgn";
+  grid.order = integer_within(reader, "bdf", one_step ? 1 : 3, 1, one_step ? 1 : max_bdf_order);
   grid.tau = reader.number("tau");
   grid.steps = integer_within(reader, "steps", 0, 0, 100000000);
   if (!(grid.tau > 0)) {
@@ -110,30 +117,54 @@ MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const
   return variant;
 }
 
+/// "every" and "times" of the output; they need "vtu".
+SnapshotPlan snapshot_plan(const JsonReader& output) {
+  SnapshotPlan plan;
+  if (output.has("vtu")) plan.pvd = output.text("vtu");
+  plan.every = integer_within(output, "every", 0, 0, 100000000);
+  if (output.has("times")) {
+    for (const json& time : output.array("times")) {
+      if (!time.is_number()) output.wrong_type("times", "an array of numbers", time);
+      plan.times.push_back(time);
+    }
+  }
+  if (plan.pvd.empty() && (output.has("every") || output.has("times"))) {
+    throw InputError(output.where() +
+                     ": every and times are about snapshots; expected the key vtu beside them");
+  }
+  return plan;
+}
+
 }  // namespace
 
 EvolveConfig evolve_config(const json& description, const std::string& source) {
   const JsonReader reader(description, source);
   EvolveConfig config;
   config.flow = reader.text("flow");
-  if (config.flow != "mean_curvature") {
-    throw InputError(source + ": found flow = \"" + config.flow + "\"; expected mean_curvature");
+  if (known_flows.count(config.flow) == 0) {
+    throw InputError(source + ": found flow = \"" + config.flow + "\"; expected one of " +
+                     listed(known_flows));
   }
   reader.accept_only({"flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start", "quadrature",
                       "variant", "output"});
   const int degree = integer_within(reader, "degree", 2, 1, max_degree);
   config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
-                                         : default_quadrature(degree);
-  config.grid = time_grid(reader);
+                : config.flow == "bgn" && degree == 1 ? vertex_quadrature()
+                                                      : default_quadrature(degree);
+  config.grid = time_grid(reader, config.flow);
   config.start_given = reader.has("start");
   if (reader.has("variant")) {
+    if (config.flow != "mean_curvature") {
+      throw InputError(source + ": flow " + config.flow + " has no variants; expected no key variant");
+    }
     config.mean_curvature = mean_curvature_variant(reader.object("variant"), source + ": variant");
   }
   if (reader.has("output")) {
     const JsonReader output(reader.object("output"), source + ": output");
-    output.accept_only({"nodal", "series"});
+    output.accept_only({"nodal", "series", "vtu", "every", "times"});
     config.nodal = output.has("nodal") ? output.text("nodal") : "";
     config.series = output.has("series") ? output.text("series") : "";
+    config.snapshots = snapshot_plan(output);
   }
   if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
   make_mesh(reader.object("mesh"), source + ": mesh", degree, config);
@@ -141,35 +172,32 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
 }
 
 std::string evolve_config_help() {
-  return "CONFIG.json (keys without a default must be given; unknown keys are errors):\n"
-         "  {\"flow\": \"mean_curvature\",                 kll19 (5.1)\n"
-         "   \"surface\": {\"name\": \"sphere\", \"radius\": 2},  exact initial surface; may be left out "
-         "with a mesh file\n"
-         "   \"mesh\": {\"file\": \"a.msh\"}                 .msh, .off, .obj, .ply, .stl; nodes are "
-         "projected to the surface\n"
-         "         | {\"edge_length\": 0.25}              largest edge of a generated mesh, in the surface's "
-         "units\n"
-         "         | {\"subdivisions\": 4},               of an icosahedron, for sphere and ellipsoid\n"
-         "   \"degree\": 2,                               1..4\n"
-         "   \"bdf\": 3,                                  1..5\n"
-         "   \"tau\": 0.05,                               step size (no default)\n"
-         "   \"steps\": 0,                                end time = steps tau; 0 writes the initial "
-         "surface\n"
-         "   \"start\": \"exact\" | \"cascade\" | \"substeps:16\",  default: exact where a solution is known "
-         "(sphere),\n"
-         "                                              else substeps:16\n"
-         "   \"quadrature\": {\"conical\": 6} | {\"degree\": 10},  default: degree 4, 6, 8, 10 for P1..P4\n"
-         "   \"variant\": {\"velocity\": \"ritz\" | \"interpolation\", \"normalise\": false, \"stabilise\": "
-         "0},\n"
-         "   \"output\": {\"nodal\": \"end.json\", \"series\": \"series.json\"}}  default: nodal values on "
-         "standard output\n"
-         "Surfaces and their defaults:\n" +
-         named_surfaces_help() +
-         "Output: nodal has t, x, v, nu, H of the last step, one row a node in the order of the mesh; series "
-         "has, per\n"
-         "step, t, area, volume, willmore_energy (1/2 int H²), max_H, min_nu, max_nu, h, worst_angle "
-         "(degrees),\n"
-         "worst_radius_ratio.";
+  return R"(CONFIG.json (keys without a default must be given; unknown keys are errors):
+  {"flow": "mean_curvature"                   kll19 (5.1): evolution equations for nu and H
+         | "dziuk"                            Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5
+         | "bgn",                             Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good
+   "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
+   "mesh": {"file": "a.msh"}                 .msh, .off, .obj, .ply, .stl; nodes are projected to the surface
+         | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
+         | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
+   "degree": 2,                               1..4
+   "bdf": 3,                                  1..5; bgn: 1
+   "tau": 0.05,                               step size (no default)
+   "steps": 0,                                end time = steps tau; 0 writes the initial surface
+   "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere), else substeps:16
+   "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
+   "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0},  mean_curvature alone
+   "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
+              "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
+              "every": 10,                    at every 10th step (default 0: none of these)
+              "times": [0.1, 0.25]}}          and at the first step at or after each of these times
+Surfaces and their defaults:
+)" + named_surfaces_help() +
+         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H) of the last step, one row a node
+in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
+(degrees), worst_radius_ratio, for mean_curvature also min_nu, max_nu. Snapshots have v, nu, H, and kappa = M^-1 A x; what
+the flow does not have is computed from the discrete surface.
+A run that meets a singularity writes what it has computed, says so, and ends with exit code 2.)";
 }
 
 }  // namespace esfem

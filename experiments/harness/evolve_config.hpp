@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "solver/analysis/run_recorder.hpp"
 #include "solver/fe/quadrature.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/mesh.hpp"
@@ -14,7 +15,7 @@ namespace esfem {
 
 /// What a CONFIG.json of `evolve` asks for, with the defaults filled in.
 struct EvolveConfig {
-  std::string flow;
+  std::string flow;                ///< mean_curvature | dziuk | bgn
   std::optional<Surface> surface;  ///< the exact initial surface, where one is given
   Mesh mesh;                       ///< P_k; on the surface, where there is one
   std::string mesh_remark;         ///< what the reader of the mesh changed; empty: nothing
@@ -23,6 +24,7 @@ struct EvolveConfig {
   Quadrature rule;
   MeanCurvatureFlow::Variant mean_curvature;
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
+  SnapshotPlan snapshots;
 };
 
 /// Reads a configuration and makes its mesh. Paths in it are relative to the working directory. Throws

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <regex>
@@ -119,12 +120,26 @@ const Cell& find_cell(const std::vector<Cell>& cells, const Request& request) {
                    " that --list prints, such as " + cells.front().name);
 }
 
-Row run_cell(const Cell& cell) {
+/// The name of an output FILE.json without its extension; "" for others.
+std::string without_extension(const std::string& output) {
+  const std::string extension = ".json";
+  const bool has_it = output.size() > extension.size() &&
+                      output.compare(output.size() - extension.size(), extension.size(), extension) == 0;
+  return has_it ? output.substr(0, output.size() - extension.size()) : "";
+}
+
+/// Where the cells of a table keep other files: beside it; "" when there is no such place.
+std::string cells_folder(const std::string& output, const std::string& stem) {
+  if (without_extension(output).empty()) return "";
+  return (std::filesystem::path(output).parent_path() / "cells" / stem).string();
+}
+
+Row run_cell(const Cell& cell, const std::string& folder) {
   const Progress clock(1, cell.cost);
   reset_peak_memory();
   Row row = cell.planned;
   try {
-    row = cell.run();
+    row = cell.run(folder);
   } catch (const NumericsError& error) {
     row.status = std::string("failed: ") + error.what();
   }
@@ -136,14 +151,14 @@ Row run_cell(const Cell& cell) {
   return row;
 }
 
-std::vector<Row> run_all(const std::vector<Cell>& cells) {
+std::vector<Row> run_all(const std::vector<Cell>& cells, const std::string& folder) {
   double total_cost = 0;
   for (const Cell& cell : cells) total_cost += cell.cost;
   Progress progress(cells.size(), total_cost);
   std::vector<Row> rows;
   for (const Cell& cell : cells) {
     progress.cell_starts(cell.name);
-    rows.push_back(run_cell(cell));
+    rows.push_back(run_cell(cell, folder.empty() ? "" : folder + "/" + cell.name));
     progress.cell_ends(cell.cost);
   }
   return rows;
@@ -184,9 +199,8 @@ void write_json(const Table& table, const std::string& output) {
 
 /// The JSON comes last: where it is, the others are.
 void write_table(const Table& table, const std::string& output) {
-  const std::string extension = ".json";
-  if (output.size() > extension.size() && output.substr(output.size() - extension.size()) == extension) {
-    const std::string base = output.substr(0, output.size() - extension.size());
+  const std::string base = without_extension(output);
+  if (!base.empty()) {
     write_file(base + ".csv", to_csv(table));
     write_file(base + ".tex", to_latex(table));
   }
@@ -202,11 +216,11 @@ void answer(const Experiment& experiment, const Request& request, Table table) {
   }
   if (experiment.parameters) table.parameters = experiment.parameters(request.options);
   if (!request.cell.empty()) {
-    table.rows = {run_cell(find_cell(cells, request))};
+    table.rows = {run_cell(find_cell(cells, request), without_extension(request.output))};
     return write_json(table, request.output);
   }
   if (request.collect_from.empty())
-    table.rows = run_all(cells);
+    table.rows = run_all(cells, cells_folder(request.output, experiment.stem));
   else
     collect(cells, request.collect_from, table);
   table.fits = fit_table(table, experiment.fit_range);

@@ -58,12 +58,24 @@ void read_order(const JsonReader& reader, Claim& claim) {
   claim.at_most = reader.number_or("at_most", claim.at_most);
 }
 
-void read_size(const JsonReader& reader, Claim& claim) {
-  claim.kind = Claim::size;
+void read_bounds_of(Claim::Kind kind, const JsonReader& reader, Claim& claim) {
+  claim.kind = kind;
   if (!reader.has("at_most") && !reader.has("at_least"))
-    throw InputError(reader.where() + ": a claim of size needs 'at_most' or 'at_least'");
+    throw InputError(reader.where() + ": a claim of this kind needs 'at_most' or 'at_least'");
   claim.at_most = reader.number_or("at_most", claim.at_most);
   claim.at_least = reader.number_or("at_least", claim.at_least);
+}
+
+void read_finding(const JsonReader& reader, Claim& claim) {
+  static const std::set<std::string> known = {"reproduced", "reproduced, but", "not reproduced", "corrected"};
+  if (!reader.has("finding")) return;
+  claim.finding = reader.text("finding");
+  if (known.count(claim.finding) == 0)
+    throw InputError(reader.where() + ": finding '" + claim.finding +
+                     "': expected reproduced; reproduced, but; not reproduced; or corrected");
+  claim.remark = reader.has("remark") ? reader.text("remark") : "";
+  if (claim.remark.empty() && claim.finding != "reproduced")
+    throw InputError(reader.where() + ": finding '" + claim.finding + "' needs a 'remark' that says why");
 }
 
 Claim claim_from_json(const Json& json, const std::string& place) {
@@ -77,29 +89,34 @@ Claim claim_from_json(const Json& json, const std::string& place) {
   claim.paper = source.text("paper");
   claim.place = source.text("place");
   claim.quantity = reader.text("quantity");
-  claim.norm = reader.text("norm");
   if (reader.has("rows")) read_rows(reader.object("rows"), reader.where(), claim);
   if (reader.has("presets")) read_presets(reader, claim);
 
-  std::set<std::string> known = {"id",   "statement", "source",  "kind",   "quantity",
-                                 "norm", "rows",      "presets", "at_most"};
+  read_finding(reader, claim);
+
+  std::set<std::string> known = {"id",   "statement", "source",  "kind",    "quantity",
+                                 "rows", "presets",   "at_most", "finding", "remark"};
   const std::string kind = reader.text("kind");
   if (kind == "order") {
     known.insert({"variable", "expected", "tolerance"});
     read_order(reader, claim);
-  } else if (kind == "size") {
+  } else if (kind == "size" || kind == "value") {
     known.insert("at_least");
-    read_size(reader, claim);
+    read_bounds_of(kind == "size" ? Claim::size : Claim::value, reader, claim);
   } else {
-    throw InputError(reader.where() + ": kind '" + kind + "': expected order or size");
+    throw InputError(reader.where() + ": kind '" + kind + "': expected order, size or value");
+  }
+  if (claim.kind != Claim::value) {
+    known.insert("norm");
+    claim.norm = reader.text("norm");
   }
   reader.accept_only(known);
   return claim;
 }
 
-/// The rows and errors that a claim is about.
+/// The rows and numbers that a claim is about.
 struct Selection {
-  std::vector<double> h, tau, error;
+  std::vector<double> h, tau, number;
 };
 
 bool is_selected(const Row& row, const Claim& claim) {
@@ -110,7 +127,13 @@ bool is_selected(const Row& row, const Claim& claim) {
   return in_range(row, range);
 }
 
-double selected_error(const Row& row, const Claim& claim) {
+double selected_number(const Row& row, const Claim& claim) {
+  if (claim.kind == Claim::value) {
+    const auto value = row.values.find(claim.quantity);
+    if (value == row.values.end())
+      throw InputError("cell " + row.cell + " has no value " + claim.quantity + " (" + row.status + ")");
+    return value->second;
+  }
   if (claim.from_step > 0) return maximum_from(row, claim.quantity, claim.norm, claim.from_step);
   const auto norms = row.errors.find(claim.quantity);
   if (norms == row.errors.end() || norms->second.count(claim.norm) == 0)
@@ -118,18 +141,24 @@ double selected_error(const Row& row, const Claim& claim) {
   return norms->second.at(claim.norm);
 }
 
-/// Throws InputError when the rows in range are none, of several variants, or do not all have the error.
+/// What a run that ended at a singularity has measured until then counts; it has no errors over the whole
+/// time.
+bool is_complete(const Row& row, const Claim& claim) {
+  return claim.kind == Claim::value ? !failed(row) : row.status == "ok";
+}
+
+/// Throws InputError when the rows in range are none, of several variants, or do not all have the number.
 Selection select(const Claim& claim, const Table& table) {
   Selection selection;
   std::set<std::string> variants;
   for (const Row& row : table.rows) {
     if (!is_selected(row, claim)) continue;
-    if (row.status != "ok") throw InputError("cell " + row.cell + " " + row.status);
-    const double error = selected_error(row, claim);
-    if (!std::isfinite(error)) throw InputError("the error of cell " + row.cell + " is not finite");
+    if (!is_complete(row, claim)) throw InputError("cell " + row.cell + " " + row.status);
+    const double number = selected_number(row, claim);
+    if (!std::isfinite(number)) throw InputError("the error of cell " + row.cell + " is not finite");
     selection.h.push_back(row.h);
     selection.tau.push_back(row.tau);
-    selection.error.push_back(error);
+    selection.number.push_back(number);
     variants.insert(variant(row));
   }
   if (variants.empty()) throw InputError("no row of the table is in the range of the claim");
@@ -140,9 +169,9 @@ Selection select(const Claim& claim, const Table& table) {
 }
 
 Verdict check_order(const Claim& claim, const Selection& rows) {
-  if (*std::max_element(rows.error.begin(), rows.error.end()) < round_off)
+  if (*std::max_element(rows.number.begin(), rows.number.end()) < round_off)
     throw InputError(format("all errors are below %g, at round-off", round_off));
-  const OrderFit fit = fit_orders(rows.h, rows.tau, rows.error);
+  const OrderFit fit = fit_orders(rows.h, rows.tau, rows.number);
   const bool in_tau = claim.variable == "tau";
   if (!(in_tau ? fit.has_tau : fit.has_h))
     throw InputError("the errors do not show how they depend on " + claim.variable);
@@ -162,18 +191,18 @@ Verdict check_order(const Claim& claim, const Selection& rows) {
   return verdict;
 }
 
-Verdict check_size(const Claim& claim, const Selection& rows) {
-  const auto [least, most] = std::minmax_element(rows.error.begin(), rows.error.end());
+Verdict check_bounds(const Claim& claim, const Selection& rows) {
+  const auto [least, most] = std::minmax_element(rows.number.begin(), rows.number.end());
   Verdict verdict;
   verdict.measured = true;
-  verdict.rows_used = static_cast<int>(rows.error.size());
-  verdict.value = *most;
-  if (!(*most <= claim.at_most)) {
-    verdict.reason = format("Error too large: %.3e, expected at most %g", *most, claim.at_most);
-  } else if (!(*least >= claim.at_least)) {
-    verdict.value = *least;
-    verdict.reason = format("Error too small: %.3e, expected at least %g", *least, claim.at_least);
-  }
+  verdict.rows_used = static_cast<int>(rows.number.size());
+  verdict.value = *most <= claim.at_most && !(*least >= claim.at_least) ? *least : *most;
+  const std::string number =
+      claim.kind == Claim::size ? format("Error %.3e", verdict.value) : format("Value %.6g", verdict.value);
+  if (!(*most <= claim.at_most))
+    verdict.reason = number + format(" is too large, expected at most %g", claim.at_most);
+  else if (!(*least >= claim.at_least))
+    verdict.reason = number + format(" is too small, expected at least %g", claim.at_least);
   return verdict;
 }
 
@@ -200,7 +229,7 @@ Verdict check_claim(const Claim& claim, const Table& table) {
   Verdict verdict;
   try {
     const Selection rows = select(claim, table);
-    verdict = claim.kind == Claim::order ? check_order(claim, rows) : check_size(claim, rows);
+    verdict = claim.kind == Claim::order ? check_order(claim, rows) : check_bounds(claim, rows);
     verdict.met = verdict.reason.empty();
   } catch (const InputError& error) {
     verdict.reason = std::string("Cannot be checked: ") + error.what();

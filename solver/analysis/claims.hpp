@@ -12,16 +12,16 @@
 
 namespace esfem {
 
-/// What a paper (or this project) says about one error of an experiment.
+/// What a paper (or this project) says about one number of an experiment.
 ///
 /// order: the order in `variable`, fitted to the rows in range, is at least expected - tolerance (one-sided:
 /// a method may do better), and at most `at_most` when that is given. size: the error of every row in range
-/// is at most `at_most` (and at least `at_least`).
+/// is at most `at_most` (and at least `at_least`). value: the same for a number in Row::values.
 struct Claim {
-  enum Kind { order, size } kind = order;
+  enum Kind { order, size, value } kind = order;
   std::string id, statement;
   std::string paper, place;    ///< source, e.g. "kll19", "§13.1, Fig. 13.1"
-  std::string quantity, norm;  ///< keys of Row::errors
+  std::string quantity, norm;  ///< keys of Row::errors; value: quantity is a key of Row::values
   std::string variable;        ///< order: "h" | "tau"
   double expected = 0;         ///< order
   double tolerance = 0;        ///< order
@@ -31,13 +31,17 @@ struct Claim {
   int from_step = 0;              ///< the maximum over time is over the steps n >= this
   std::string variant;            ///< as variant(row); "" when all rows in range are of one
   std::set<std::string> presets;  ///< where it is checked; empty: everywhere
+  /// What became of the paper's statement, where the bounds are this project's finding: "reproduced",
+  /// "reproduced, but", "not reproduced" or "corrected", with the reason; empty: it holds as stated when the
+  /// claim is met.
+  std::string finding, remark;
 };
 
 /// Contents of reference/<stem>.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
-/// {"paper", "place"}, "kind": "order" | "size", "quantity", "norm", "rows": {"tau", "tau_min", "tau_max",
-/// "h", "h_min", "h_max", "variant", "from_step"}, "presets": [..], ...}]}; order: "variable", "expected",
-/// "tolerance", and "at_most" if wanted; size: "at_most" and/or "at_least". rows.tau and rows.h select one
-/// value.
+/// {"paper", "place"}, "kind": "order" | "size" | "value", "quantity", "norm" (not of a value), "rows":
+/// {"tau", "tau_min", "tau_max", "h", "h_min", "h_max", "variant", "from_step"}, "presets": [..], ...}]};
+/// order: "variable", "expected", "tolerance", and "at_most" if wanted; size and value: "at_most" and/or
+/// "at_least". rows.tau and rows.h select one value. A claim may have "finding" and "remark".
 struct Reference {
   std::string experiment, paper;
   std::vector<Claim> claims;

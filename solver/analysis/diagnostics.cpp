@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/analysis/diagnostics.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
 namespace esfem {
 
 void record_geometry(const SurfaceSpace& space, double t, const Field& x, Series& series) {
@@ -13,15 +17,64 @@ void record_geometry(const SurfaceSpace& space, double t, const Field& x, Series
   series["worst_radius_ratio"].push_back(quality.min_radius_ratio);
 }
 
-void record_curvature(const SurfaceSpace& space, const Field& x, const Field& nu, const Field& H,
-                      Series& series) {
-  SymmetricMatrix M = space.matrix(), A = space.matrix();
-  space.assemble(x, M, A);
-  const Eigen::VectorXd length = nu.rowwise().norm();
-  series["willmore_energy"].push_back(0.5 * M.energy(H));
+void record_curvature(const SurfaceSpace& space, const Field& x, const Field& H, Series& series) {
+  const auto square = [](const PointData<1>& p, Integrand<1, 0>& load) { load.value[0] = p.u[0] * p.u[0]; };
+  Field load;
+  space.assemble_load<1, 1, 0>(x, H, square, load);
+  series["willmore_energy"].push_back(0.5 * load.sum());  // the shape functions sum to 1
   series["max_H"].push_back(H.cwiseAbs().maxCoeff());
+}
+
+void record_normal_length(const Field& nu, Series& series) {
+  const Eigen::VectorXd length = nu.rowwise().norm();
   series["min_nu"].push_back(length.minCoeff());
   series["max_nu"].push_back(length.maxCoeff());
+}
+
+namespace {
+
+/// Squared radius at x3 = 0: least squares fit of r² = a + b x3 + c x3² + d x3⁴.
+double squared_neck_radius(const Field& x, const Eigen::VectorXd& squared_radius) {
+  const double window = 0.1;
+  const int fewest = 12;
+  std::vector<int> nodes(x.rows());
+  std::iota(nodes.begin(), nodes.end(), 0);
+  std::sort(nodes.begin(), nodes.end(), [&](int i, int j) { return std::abs(x(i, 2)) < std::abs(x(j, 2)); });
+  int count = std::min<int>(fewest, nodes.size());
+  while (count < static_cast<int>(nodes.size()) && std::abs(x(nodes[count], 2)) < window) ++count;
+  Eigen::MatrixXd terms(count, 4);
+  Eigen::VectorXd values(count);
+  for (int i = 0; i < count; ++i) {
+    const double z = x(nodes[i], 2);
+    terms.row(i) << 1, z, z * z, z * z * z * z;
+    values[i] = squared_radius[nodes[i]];
+  }
+  return terms.colPivHouseholderQr().solve(values)[0];
+}
+
+}  // namespace
+
+void record_profile(const Field& x, Series& series) {
+  const Eigen::VectorXd squared_radius = x.leftCols(2).rowwise().squaredNorm();
+  series["neck_radius"].push_back(std::sqrt(std::max(squared_neck_radius(x, squared_radius), 0.0)));
+  series["widest_radius"].push_back(std::sqrt(squared_radius.maxCoeff()));
+  series["tip"].push_back(x.col(2).cwiseAbs().maxCoeff());
+}
+
+std::optional<double> pinch_time(const Series& series) {
+  const std::vector<double>&t = series.at("t"), &r = series.at("neck_radius");
+  if (r.empty() || r.back() > r[0] / 2) return {};
+  int n = static_cast<int>(r.size()) - 1;
+  while (r[n] < r[0] / 5) --n;
+  if (n < 2) return {};
+  const auto w = [&](int i) { return r[i] * r[i]; };
+  // Newton's form around the last step: w(t_n + s) = w_n + slope s + bend s (s + t_n - t_{n-1}).
+  const double slope = (w(n) - w(n - 1)) / (t[n] - t[n - 1]);
+  const double before = (w(n - 1) - w(n - 2)) / (t[n - 1] - t[n - 2]);
+  const double bend = std::min((slope - before) / (t[n] - t[n - 2]), 0.0);
+  const double b = slope + bend * (t[n] - t[n - 1]);
+  if (!(b < 0)) return {};
+  return t[n] + 2 * w(n) / (-b + std::sqrt(b * b - 4 * bend * w(n)));
 }
 
 }  // namespace esfem

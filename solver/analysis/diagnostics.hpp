@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,10 +17,22 @@ using Series = std::map<std::string, std::vector<double>>;
 /// "worst_radius_ratio" (of the triangles between the corners).
 void record_geometry(const SurfaceSpace& space, double t, const Field& x, Series& series);
 
-/// Appends what a flow's own normal nu_h (N x 3) and mean curvature H_h (N x 1) say: "willmore_energy"
-/// 1/2 int H_h² over Gamma_h[x] (8 pi on spheres), "max_H" (of |H_h| in the nodes), "min_nu" and "max_nu" (of
-/// |nu_h|).
-void record_curvature(const SurfaceSpace& space, const Field& x, const Field& nu, const Field& H,
-                      Series& series);
+/// Appends what the mean curvature H_h (N x 1) says: "willmore_energy" 1/2 int H_h² over Gamma_h[x] (8 pi on
+/// spheres) and "max_H" (of |H_h| in the nodes).
+void record_curvature(const SurfaceSpace& space, const Field& x, const Field& H, Series& series);
+
+/// Appends the lengths of a flow's own normal nu_h (N x 3) in the nodes: "min_nu" and "max_nu".
+void record_normal_length(const Field& nu, Series& series);
+
+/// Appends the profile of a surface around the x3 axis that has a neck at x3 = 0: "neck_radius" (from the
+/// nodes near x3 = 0, by a least-squares fit of their squared distances from the axis by a polynomial in x3),
+/// "widest_radius" (largest distance of a node from the axis) and "tip" (largest |x3| of a node).
+void record_profile(const Field& x, Series& series);
+
+/// The time at which the neck pinches: neck_radius² extrapolated to zero from the last three steps at which
+/// the neck still has a fifth of its first radius, by a parabola, or by a line through the last two where the
+/// parabola bends upwards. Nothing when the neck has not come below half of its first radius, or does not
+/// shrink in these steps.
+std::optional<double> pinch_time(const Series& series);
 
 }  // namespace esfem

@@ -341,16 +341,14 @@ bool in_range(const Row& row, const RowRange& range) {
          row.h >= range.h_min * (1 - slack) && row.h <= range.h_max * (1 + slack);
 }
 
-std::vector<Fit> fit_table(const Table& table, const RowRange& range) {
-  std::vector<const Row*> rows;
+namespace {
+
+/// The fits of rows of one variant, without its name.
+std::vector<Fit> fit_variant(const std::vector<const Row*>& rows) {
   std::set<std::pair<std::string, std::string>> names;
-  for (const Row& row : table.rows) {
-    if (row.status != "ok" || !in_range(row, range)) continue;
-    rows.push_back(&row);
-    if (variant(row) != variant(*rows[0])) return {};
-    for (const auto& [quantity, norms] : row.errors)
+  for (const Row* row : rows)
+    for (const auto& [quantity, norms] : row->errors)
       for (const auto& [norm, value] : norms) names.insert({quantity, norm});
-  }
 
   std::vector<Fit> fits;
   for (const auto& [quantity, norm] : names) {
@@ -365,14 +363,30 @@ std::vector<Fit> fit_table(const Table& table, const RowRange& range) {
     try {
       const OrderFit fit = fit_orders(h, tau, error);
       if (fit.has_h)
-        fits.push_back({quantity, norm, "h", fit.order_h, {fit.ci95_h[0], fit.ci95_h[1]}, fit.rows_used});
+        fits.push_back({quantity, norm, "h", fit.order_h, {fit.ci95_h[0], fit.ci95_h[1]}, fit.rows_used, ""});
       if (fit.has_tau)
         fits.push_back(
-            {quantity, norm, "tau", fit.order_tau, {fit.ci95_tau[0], fit.ci95_tau[1]}, fit.rows_used});
+            {quantity, norm, "tau", fit.order_tau, {fit.ci95_tau[0], fit.ci95_tau[1]}, fit.rows_used, ""});
     } catch (const InputError&) {
     } catch (const NumericsError&) {
     }
   }
+  return fits;
+}
+
+}  // namespace
+
+std::vector<Fit> fit_table(const Table& table, const RowRange& range) {
+  std::map<std::string, std::vector<const Row*>> variants;
+  for (const Row& row : table.rows)
+    if (row.status == "ok" && in_range(row, range)) variants[variant(row)].push_back(&row);
+
+  std::vector<Fit> fits;
+  for (const auto& [name, rows] : variants)
+    for (Fit fit : fit_variant(rows)) {
+      if (variants.size() > 1) fit.variant = name;
+      fits.push_back(fit);
+    }
   return fits;
 }
 

@@ -39,9 +39,9 @@ struct OrderFit {
 OrderFit fit_orders(const std::vector<double>& h, const std::vector<double>& tau,
                     const std::vector<double>& error);
 
-/// Fits for every quantity and norm of the rows with status "ok" in the range, but for those at round-off and
-/// those whose orders the data do not determine. Rows of different variants have no common order: then there
-/// is no fit.
+/// Fits for every variant, quantity and norm of the rows with status "ok" in the range, but for those at
+/// round-off and those whose orders the data do not determine. Rows of different variants have no common
+/// order.
 std::vector<Fit> fit_table(const Table& table, const RowRange& range);
 
 }  // namespace esfem

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -61,6 +62,19 @@ std::set<std::string> further_keys(const Table& table) {
     for (const auto& item : row.more.items())
       if (item.value().is_primitive()) keys.insert(item.key());
   return keys;
+}
+
+/// Names of the values of all rows.
+std::set<std::string> value_names(const Table& table) {
+  std::set<std::string> names;
+  for (const Row& row : table.rows)
+    for (const auto& [name, value] : row.values) names.insert(name);
+  return names;
+}
+
+double value_of(const Row& row, const std::string& name) {
+  const auto value = row.values.find(name);
+  return value == row.values.end() ? std::nan("") : value->second;
 }
 
 std::string csv_further(const Row& row, const std::string& key) {
@@ -162,17 +176,22 @@ std::string row_text(const Row& row, const Row* previous, Direction direction,
   return text + " \\\\\n";
 }
 
+/// One line of fitted orders for each variant that has some.
 std::string fit_text(const Table& table, Direction direction, const std::vector<std::string>& quantities,
                      const std::string& norm) {
   const std::string name = direction == Direction::tau ? "tau" : "h";
-  std::string text = "fit";
-  for (const std::string& quantity : quantities) {
-    double order = std::nan("");
-    for (const Fit& fit : table.fits)
-      if (fit.quantity == quantity && fit.norm == norm && fit.variable == name) order = fit.order;
-    text += " & & " + latex_number(order, "%.2f");
+  std::map<std::string, std::map<std::string, double>> orders;
+  for (const Fit& fit : table.fits)
+    if (fit.norm == norm && fit.variable == name) orders[fit.variant][fit.quantity] = fit.order;
+  if (orders.empty()) orders[""];
+  std::string text;
+  for (const auto& [variant, order] : orders) {
+    text += variant.empty() ? "fit" : "fit, " + latex_text(variant);
+    for (const std::string& quantity : quantities)
+      text += " & & " + latex_number(order.count(quantity) ? order.at(quantity) : std::nan(""), "%.2f");
+    text += " \\\\\n";
   }
-  return text + " \\\\\n";
+  return text;
 }
 
 std::string latex_table(const Table& table, Direction direction, const std::vector<std::string>& quantities,
@@ -203,13 +222,31 @@ std::string latex_table(const Table& table, Direction direction, const std::vect
   return text + "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
 }
 
+/// The values of the rows that have some, a line a row.
+std::string latex_values(const Table& table) {
+  const std::set<std::string> names = value_names(table);
+  std::string text = "\\begin{table}\n\\centering\n\\caption{" + latex_text(table.experiment) +
+                     ": values.}\n\\begin{tabular}{lrr" + std::string(names.size(), 'r') +
+                     "}\n\\toprule\n & $N$ & $\\tau$";
+  for (const std::string& name : names) text += " & " + latex_text(name);
+  text += " \\\\\n\\midrule\n";
+  for (const Row& row : table.rows) {
+    if (row.values.empty()) continue;
+    text += latex_text(variant(row)) + format(" & %d & ", row.nodes) + latex_number(row.tau, "%.4g");
+    for (const std::string& name : names) text += " & " + latex_number(value_of(row, name), "%.5g");
+    text += " \\\\\n";
+  }
+  return text + "\\bottomrule\n\\end{tabular}\n\\end{table}\n";
+}
+
 }  // namespace
 
 std::string to_csv(const Table& table) {
   const auto names = error_names(table);
-  const std::set<std::string> further = further_keys(table);
+  const std::set<std::string> further = further_keys(table), values = value_names(table);
   std::string text = "cell,level,h,nodes,tau,steps,status,seconds,peak_memory_mb";
   for (const std::string& key : further) text += "," + csv_text(key);
+  for (const std::string& name : values) text += "," + csv_text(name);
   for (const auto& [quantity, norm] : names) text += "," + csv_text(quantity + "_" + norm);
   text += "\n";
   for (const Row& row : table.rows) {
@@ -217,6 +254,7 @@ std::string to_csv(const Table& table) {
             csv_number(row.tau) + format(",%d,", row.steps) + csv_text(row.status) + "," +
             csv_number(row.seconds) + "," + csv_number(row.peak_memory_mb);
     for (const std::string& key : further) text += "," + csv_further(row, key);
+    for (const std::string& name : values) text += "," + csv_number(value_of(row, name));
     for (const auto& [quantity, norm] : names) text += "," + csv_number(error_of(row, quantity, norm));
     text += "\n";
   }
@@ -227,6 +265,7 @@ std::string to_latex(const Table& table) {
   std::string text = "% " + table.experiment + " (" + table.paper + "); needs \\usepackage{booktabs}\n";
   std::set<std::string> norms;
   for (const auto& [quantity, norm] : error_names(table)) norms.insert(norm);
+  if (!value_names(table).empty()) text += "\n" + latex_values(table);
   for (const std::string& norm : norms) {
     std::vector<std::string> quantities;
     for (const auto& name : error_names(table))

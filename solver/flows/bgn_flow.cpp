@@ -143,4 +143,8 @@ BgnFlow::State bgn_state_on(const SurfaceSpace& space, const Field& x) {
   return {0, x, -curvature.kappa(), curvature.H()};
 }
 
+std::vector<PointField> point_fields(const BgnFlow::State& state) {
+  return {{"v", state.v}, {"H", state.H}};
+}
+
 }  // namespace esfem

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -42,5 +43,8 @@ class BgnFlow {
 /// The state on nodes x at time 0, with v = -M(x)^-1 A(x) x and H the projection of -v onto the discrete
 /// normal.
 BgnFlow::State bgn_state_on(const SurfaceSpace& space, const Field& x);
+
+/// The flow's own nodal fields beside x: v, H.
+std::vector<PointField> point_fields(const BgnFlow::State& state);
 
 }  // namespace esfem

@@ -38,4 +38,8 @@ DziukFlow::State exact_dziuk_state(const ExactEvolution& exact, const Field& x0,
   return {t, x, exact.nodal_values(x, t).middleCols(exact.column("v"), 3)};
 }
 
+std::vector<PointField> point_fields(const DziukFlow::State& state) {
+  return {{"v", state.v}};
+}
+
 }  // namespace esfem

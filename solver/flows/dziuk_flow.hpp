@@ -4,13 +4,22 @@
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
 
 /// Mean curvature flow by Dziuk's scheme (Numer. Math. 58, 1990; kll19 (3.6)), linearly implicit BDF:
 ///   M(x~) 1/tau sum_{j>=0} delta_j x^{n-j} + A(x~) x^n = 0.
-/// Unstable with BDF 4 and 5 (a run with them is allowed: it shows it).
+///
+/// Tangential motion of the nodes: A(x) x is normal to the surface, so a tangential displacement d changes it
+/// by nothing to first order, and of A(x~) x^n there remains A (d^n - d~^n), d~ extrapolated. For a mode with
+/// A d = lambda M d this is
+///   delta(zeta) + tau lambda (1 - zeta)^q = 0,
+/// which has its roots outside the unit disk for q <= 3, but not for q = 4 beyond tau lambda = 2.5 and q = 5
+/// beyond 0.64: these are unstable (a run with them is allowed: it shows it). With q = 2 the tangential
+/// velocity is damped by (tau lambda + 1/2)/(tau lambda + 3/2) per step alone, next to nothing for rough
+/// modes: their drift goes on until the mesh degenerates. With q = 1 it stops at once.
 ///
 /// Unknown nodal vector: positions x. The velocity v = 1/tau sum_{j>=0} delta_j x^{n-j} is kept beside it.
 class DziukFlow {
@@ -41,5 +50,8 @@ DziukFlow::State dziuk_state_on(const SurfaceSpace& space, const Field& x);
 
 /// The state whose nodal values are an exact solution's, in the nodes that start at x0.
 DziukFlow::State exact_dziuk_state(const ExactEvolution& exact, const Field& x0, double t);
+
+/// The flow's own nodal fields beside x: v.
+std::vector<PointField> point_fields(const DziukFlow::State& state);
 
 }  // namespace esfem

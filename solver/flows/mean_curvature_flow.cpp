@@ -54,7 +54,7 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   history.extrapolate(q, &State::x, x_tilde_);
   history.extrapolate(q, &State::u, u_tilde_);
 
-  space_.assemble(x_tilde_, M_, A_);
+  assemble_regular(space_, x_tilde_, M_, A_);
   space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, MeanCurvatureLoads{variant_.stabilise}, loads_);
 
   // (5.1), first line: K(x̃) v = g(x̃, ũ)
@@ -72,6 +72,7 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   history.bdf_sum(q, &State::x, sum_);
   next.x = (tau * next.v - sum_) / delta_0;
   require_regular(space_, next.x, next.u.col(3));
+  require_normal(next.u.leftCols(3));
 }
 
 MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu, const Field& H) {
@@ -119,6 +120,10 @@ MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space
   space.assemble_load<3, 1, 0>(x, nu, divergence, H);
   cholesky.solve(H);
   return mean_curvature_state(0, x, nu, H);
+}
+
+std::vector<PointField> point_fields(const MeanCurvatureFlow::State& state) {
+  return {{"v", state.v}, {"nu", state.u.leftCols(3)}, {"H", state.u.col(3)}};
 }
 
 Field table_columns(const MeanCurvatureFlow::State& state) {

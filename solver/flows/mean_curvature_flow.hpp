@@ -4,6 +4,7 @@
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -61,6 +62,9 @@ MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const F
 /// A state for a surface of which only the nodes x are known; t = 0. nu is the L2 projection of the normals
 /// of Gamma_h[x], rescaled to unit length in the nodes, and H the L2 projection of the divergence of this nu.
 MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space, const Field& x);
+
+/// The flow's own nodal fields beside x: v, nu, H.
+std::vector<PointField> point_fields(const MeanCurvatureFlow::State& state);
 
 /// x, v, nu, H side by side (N x 10), the columns of the error tables.
 Field table_columns(const MeanCurvatureFlow::State& state);

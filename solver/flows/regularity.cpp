@@ -42,6 +42,16 @@ void require_regular(const SurfaceSpace& space, const Field& x, const Field& H) 
   }
 }
 
+void require_normal(const Field& nu) {
+  for (int j = 0; j < nu.rows(); ++j) {
+    const double length = nu.row(j).norm();
+    if (length > largest_normal_length || length < 1 / largest_normal_length) {
+      throw SingularityError(format("at node %d, nu_h has length %g; expected %g to %g", j, length,
+                                    1 / largest_normal_length, largest_normal_length));
+    }
+  }
+}
+
 void assemble_regular(const SurfaceSpace& space, const Field& x_tilde, SymmetricMatrix& M,
                       SymmetricMatrix& A) {
   try {

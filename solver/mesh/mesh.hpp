@@ -24,6 +24,10 @@ Mesh lagrange_mesh(const Mesh& mesh, int degree);
 /// The corner triangles as a P1 mesh; keeps the corners' order, drops the other nodes.
 Mesh corner_mesh(const Mesh& mesh);
 
+/// The P1 mesh with every triangle cut into four through the middle nodes of its edges (of the P2 mesh with
+/// the same element maps). The four stay together in the element order.
+Mesh subdivide(const Mesh& mesh);
+
 /// Moves every node to its closest point on the surface: afterwards |d| is at round-off. Throws InputError
 /// with the node's number (from 1) when a node is further away than half the mesh's largest edge.
 void project_nodes(Mesh& mesh, const Surface& surface);

@@ -7,9 +7,6 @@
 
 namespace esfem {
 
-namespace {
-
-/// Every triangle cut into four through its edges' midpoints. The four stay together in the element order.
 Mesh subdivide(const Mesh& mesh) {
   const Mesh quadratic = lagrange_mesh(mesh, 2);
   Mesh result;
@@ -21,6 +18,8 @@ Mesh subdivide(const Mesh& mesh) {
       for (int i = 0; i < 3; ++i) result.elements(4 * e + c, i) = quadratic.elements(e, child[c][i]);
   return result;
 }
+
+namespace {
 
 void put_on_sphere(Mesh& mesh, double radius) {
   for (int i = 0; i < mesh.nodes.rows(); ++i) mesh.nodes.row(i) *= radius / mesh.nodes.row(i).norm();

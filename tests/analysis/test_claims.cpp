@@ -70,6 +70,51 @@ Verdict check(json claim, const json& changes = json::object(), const Table& tab
   return check_claim(reference_from_json(reference({claim}), "r.json").claims.at(0), table);
 }
 
+json value_claim() {
+  json claim = size_claim();
+  claim.erase("norm");
+  claim["id"] = "pinch";
+  claim["kind"] = "value";
+  claim["quantity"] = "pinch_time";
+  claim["at_least"] = 0.08;
+  claim["at_most"] = 0.085;
+  return claim;
+}
+
+TEST(Claims, OfValuesHoldRunsThatEndedAtASingularity) {
+  Table table = sample_table();
+  for (Row& row : table.rows) row.values["pinch_time"] = 0.0825;
+  Row& row = table.rows[2];  // h = 0.5, tau = 0.05
+  row.status = "singular at t = 0.0825 (step 27): element 7";
+  EXPECT_TRUE(check(value_claim(), json::object(), table).met);
+  EXPECT_EQ(check(value_claim(), json::object(), table).value, 0.0825);
+  EXPECT_FALSE(check(size_claim(), json::object(), table).met) << "its errors end too early";
+  EXPECT_THAT(check(value_claim(), {{"at_most", 0.082}}, table).reason,
+              HasSubstr("Value 0.0825 is too large, expected at most 0.082"));
+  EXPECT_THAT(check(value_claim(), {{"at_least", 0.083}}, table).reason,
+              HasSubstr("Value 0.0825 is too small, expected at least 0.083"));
+  row.values.clear();
+  EXPECT_THAT(check(value_claim(), json::object(), table).reason,
+              HasSubstr("has no value pinch_time (singular"));
+  row.status = "failed: factorisation";
+  EXPECT_THAT(check(value_claim(), json::object(), table).reason, HasSubstr("failed: factorisation"));
+}
+
+TEST(Claims, SayWhatBecameOfAStatement) {
+  const auto read = [](const json& changes) {
+    json claim = value_claim();
+    claim.update(changes);
+    return reference_from_json(reference({claim}), "r.json").claims.at(0);
+  };
+  EXPECT_EQ(read(json::object()).finding, "");
+  const Claim claim = read({{"finding", "reproduced, but"}, {"remark", "the start does it"}});
+  EXPECT_EQ(claim.finding, "reproduced, but");
+  EXPECT_EQ(claim.remark, "the start does it");
+  EXPECT_THROW(read({{"finding", "not reproduced"}}), InputError) << "without a reason";
+  EXPECT_THROW(read({{"finding", "perhaps"}, {"remark", "?"}}), InputError);
+  EXPECT_THROW(read({{"norm", "nodal_L2"}}), InputError) << "a value has no norm";
+}
+
 TEST(Claims, CanLeaveOutTheFirstSteps) {
   Table table = sample_table();
   for (Row& row : table.rows) row.series["x_nodal_H1"] = {0.5, 0.25, 0.001, 0.002};
@@ -206,7 +251,7 @@ TEST(Claims, ReadingNamesClaimAndKey) {
               AllOf(HasSubstr("rows"), HasSubstr("'tau_mx'")));
   EXPECT_THAT(with(order_claim(), {{"rows", {{"tau", 1}, {"tau_max", 1}}}}), HasSubstr("excludes"));
   EXPECT_THAT(with(order_claim(), {{"rows", {{"h_min", 2}, {"h_max", 1}}}}), HasSubstr("no h is in"));
-  EXPECT_THAT(with(order_claim(), {{"kind", "slope"}}), HasSubstr("expected order or size"));
+  EXPECT_THAT(with(order_claim(), {{"kind", "slope"}}), HasSubstr("expected order, size or value"));
   EXPECT_THAT(with(order_claim(), {{"variable", "t"}}), HasSubstr("expected h or tau"));
   EXPECT_THAT(with(order_claim(), {{"tolerance", "some"}}), HasSubstr("a number"));
   EXPECT_THAT(with(order_claim(), {{"presets", json::array({"chek"})}}), HasSubstr("\"chek\""));

@@ -246,11 +246,23 @@ TEST(FitTable, LeavesOutFailedRowsAndRowsOutOfRange) {
   EXPECT_EQ(fits[1].rows_used, 29);
 }
 
-TEST(FitTable, DoesNotMixVariants) {
+TEST(FitTable, FitsEachVariantByItself) {
   Table table = table_of(grid(1, 5, 0, 2, 4, 3));
-  EXPECT_EQ(fit_table(table, {}).size(), 1u);
-  table.rows[2].more["variant"] = "other";
-  EXPECT_TRUE(fit_table(table, {}).empty());
+  EXPECT_EQ(fit_table(table, {})[0].variant, "");
+  const Table slow = table_of(grid(1, 5, 0, 2, 4, 1));
+  for (Row row : slow.rows) {
+    row.more["flow"] = "dziuk";
+    table.rows.push_back(row);
+  }
+  const std::vector<Fit> fits = fit_table(table, {});
+  ASSERT_EQ(fits.size(), 2u);
+  EXPECT_EQ(fits[0].variant, "");
+  EXPECT_NEAR(fits[0].order, 3, 1e-5);
+  EXPECT_EQ(fits[1].variant, "flow=dziuk");
+  EXPECT_NEAR(fits[1].order, 1, 1e-5);
+  // A row of a third variant has no order of its own and changes none.
+  table.rows[2].more["flow"] = "other";
+  EXPECT_EQ(fit_table(table, {}).size(), 2u);
 }
 
 }  // namespace

@@ -33,6 +33,7 @@ Row sample_row(const std::string& cell, double h, double tau) {
   row.errors["x"] = {{"nodal_L2", 0.1 * h * h + tau}, {"nodal_H1", 1.0 / 3}};
   row.errors["nu"] = {{"nodal_L2", 2e-9}};
   row.series["t"] = {0, 0.05, 0.1};
+  row.values["pinch_time"] = 1.0 / 12;
   row.more["variant"] = "ritz";
   return row;
 }
@@ -44,7 +45,7 @@ Table sample_table() {
   table.parameters = {{"preset", "check"}};
   table.provenance = {{"version", "0.1.0"}};
   table.rows = {sample_row("h1_tau2", 0.4999999999999999, 0.1 / 3), sample_row("h1_tau3", 0.5, 0.05 / 3)};
-  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3.05}, 12}};
+  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3.05}, 12, "variant=ritz"}};
   return table;
 }
 
@@ -80,7 +81,9 @@ TEST(Table, RoundTripKeepsEveryBit) {
   EXPECT_EQ(again.rows[0].errors, table.rows[0].errors);
   EXPECT_EQ(again.rows[0].series, table.rows[0].series);
   EXPECT_EQ(again.rows[0].more, table.rows[0].more);
+  EXPECT_EQ(again.rows[0].values, table.rows[0].values);
   EXPECT_EQ(again.fits[0].ci95[1], 3.05);
+  EXPECT_EQ(again.fits[0].variant, "variant=ritz");
 }
 
 TEST(Table, HasTheKeysOfTheSchema) {
@@ -92,6 +95,18 @@ TEST(Table, HasTheKeysOfTheSchema) {
   for (const char* key :
        {"cell", "level", "h", "nodes", "tau", "steps", "status", "seconds", "peak_memory_mb", "series"})
     EXPECT_TRUE(written["rows"][0].contains(key)) << key;
+}
+
+TEST(Table, ASingularRunHasNotFailed) {
+  Table table = sample_table();
+  table.rows[0].status = "singular at t = 0.08 (step 27): element 3 is too thin";
+  table.rows[1].status = "failed: step 3, t = 0.1: factorisation failed";
+  const Table again = table_from_json(to_json(table), "t.json");
+  EXPECT_FALSE(failed(again.rows[0]));
+  EXPECT_TRUE(failed(again.rows[1]));
+  json other = to_json(table);
+  other["rows"][0]["status"] = "stopped";
+  EXPECT_THAT(reading(other), HasSubstr("expected ok, singular at t = ..: why, or failed: why"));
 }
 
 TEST(Table, NonFiniteErrorsMakeTheRowFail) {
@@ -140,7 +155,8 @@ TEST(Table, ReadingNamesPlaceAndKey) {
   EXPECT_THAT(with("/rows/1/h", "big"), AllOf(HasSubstr("row 2"), HasSubstr("'h'"), HasSubstr("a number")));
   EXPECT_THAT(with("/rows/0/nodes", 1.5), AllOf(HasSubstr("row 1"), HasSubstr("'nodes'")));
   EXPECT_THAT(with("/rows/0/h", nullptr), HasSubstr("'h'"));
-  EXPECT_THAT(with("/rows/0/status", "fine"), HasSubstr("expected ok or failed: why"));
+  EXPECT_THAT(with("/rows/0/status", "fine"),
+              HasSubstr("expected ok, singular at t = ..: why, or failed: why"));
   EXPECT_THAT(with("/rows/0/errors/x", 1.0), HasSubstr("errors.x"));
   EXPECT_THAT(with("/rows/1/cell", "h1_tau2"), HasSubstr("occurs twice"));
   EXPECT_THAT(with("/fits/0/ci95", json({1})), HasSubstr("fit 1"));

@@ -31,7 +31,7 @@ Table sample_table() {
   table.experiment = "mcf_sphere";
   table.paper = "kll19";
   table.rows = {row("b", 1, 0.5, 0.05, 1e-3), row("a", 1, 0.5, 0.1, 8e-3), row("c", 2, 0.4, 0.1, 0.8 * 8e-3)};
-  table.fits = {{"x", "nodal_L2", "tau", 2.96, {2.9, 3}, 3}};
+  table.fits = {{"x", "nodal_L2", "tau", 2.96, {2.9, 3}, 3, ""}};
   return table;
 }
 
@@ -95,6 +95,29 @@ TEST(Latex, VariantsAreBlocksOfTheirOwn) {
 
 TEST(Latex, OnlyOfWhatIsThere) {
   EXPECT_THAT(to_latex(Table{}), Not(HasSubstr("tabular")));
+}
+
+TEST(Latex, EachVariantHasItsFits) {
+  Table table = sample_table();
+  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3}, 5, "flow=kll"},
+                {"x", "nodal_L2", "tau", 1.1, {1, 1.2}, 5, "flow=dziuk"}};
+  EXPECT_THAT(to_latex(table),
+              HasSubstr("\\midrule\nfit, flow=dziuk & & $1.10$ \\\\\nfit, flow=kll & & $2.90$ \\\\\n"));
+}
+
+TEST(Values, AreColumnsOfTheirOwn) {
+  Table table;
+  table.experiment = "mcf_dumbbell";
+  table.rows = {row("a", 0, 0.2, 0.003, 1), row("b", 0, 0.2, 0.0015, 1)};
+  for (Row& row : table.rows) row.errors.clear();
+  table.rows[0].values["pinch_time"] = 0.0825;
+  table.rows[0].status = "singular at t = 0.0825 (step 27): element 7";
+  EXPECT_THAT(to_csv(table), HasSubstr(",peak_memory_mb,pinch_time\n"));
+  EXPECT_THAT(to_csv(table), HasSubstr(",0.082500000000000004\n"));
+  const std::string text = to_latex(table);
+  EXPECT_THAT(text, HasSubstr("& $N$ & $\\tau$ & pinch\\_time \\\\\n"));
+  EXPECT_THAT(text, HasSubstr("& $0.003$ & $0.0825$ \\\\\n"));
+  EXPECT_THAT(text, Not(HasSubstr("0.0015")));
 }
 
 }  // namespace

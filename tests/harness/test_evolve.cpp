@@ -104,9 +104,45 @@ TEST_F(Evolve, StopsAtTheSingularityAndKeepsWhatItHas) {
   EXPECT_LT(history.at("area").back().get<double>(), 2);
 }
 
+TEST_F(Evolve, RunsAllFlowsOfMeanCurvature) {
+  const double radius = std::sqrt(1 - 4 * 0.04);
+  for (const auto& [flow, bdf] : {std::pair("mean_curvature", 2), {"dziuk", 2}, {"bgn", 1}}) {
+    ASSERT_EQ(run(config({{"flow", flow}, {"bdf", bdf}})), exit_done) << message;
+    const json end = read_json(nodal), history = read_json(series);
+    EXPECT_NEAR(history.at("max_H")[4].get<double>(), 2 / radius, 0.15) << flow;
+    EXPECT_NEAR(history.at("area")[4].get<double>(), 4 * std::acos(-1.0) * radius * radius, 0.1) << flow;
+    EXPECT_EQ(end.contains("nu"), std::string(flow) == "mean_curvature");
+    EXPECT_EQ(end.contains("H"), std::string(flow) != "dziuk");
+    EXPECT_EQ(history.at("status"), "ok");
+  }
+  ASSERT_EQ(run(config({{"flow", "dziuk"}, {"bdf", 4}})), exit_done) << message;
+  EXPECT_THAT(message, HasSubstr("unstable with BDF4"));
+}
+
+TEST_F(Evolve, WritesSnapshotsAtTheTimesAskedFor) {
+  const std::string pvd = (folder / "snapshots/run.pvd").string();
+  const json output = {{"vtu", pvd}, {"times", {0.015}}};
+  ASSERT_EQ(run(config({{"output", output}})), exit_done) << message;
+  // At the start, at t = 0.02 (the first step after 0.015), and at the end.
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "snapshots")) {
+    EXPECT_GT(entry.file_size(), 100u);
+    count += entry.path().extension() == ".vtu";
+  }
+  EXPECT_EQ(count, 3);
+  std::ifstream stream(pvd);
+  const std::string collection(std::istreambuf_iterator<char>(stream), {});
+  for (const char* text : {"run_0000.vtu", "run_0002.vtu", "0.02"}) EXPECT_THAT(collection, HasSubstr(text));
+}
+
 TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
   const std::vector<std::pair<json, std::string>> bad = {
-      {{{"flow", "mean"}}, "expected mean_curvature"},
+      {{{"flow", "mean"}}, "expected one of bgn, dziuk, mean_curvature"},
+      {{{"flow", "bgn"}, {"bdf", 2}}, "bdf = 2; expected 1 to 1"},
+      {{{"flow", "dziuk"}, {"variant", {{"normalise", true}}}}, "no variants"},
+      {{{"output", {{"every", 5}}}}, "expected the key vtu"},
+      {{{"output", {{"vtu", "snapshots"}}}}, ".pvd"},
+      {{{"output", {{"vtu", "a.pvd"}, {"times", {0.02, 0.01}}}}}, "increasing"},
       {{{"taw", 1}}, "unknown key 'taw'; known are"},
       {{{"tau", -1}}, "positive step size"},
       {{{"bdf", 6}}, "expected 1 to 5"},
@@ -120,7 +156,7 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"quadrature", {{"gauss", 3}}}}, "known are conical, degree"},
       {{{"variant", {{"velocity", "exact"}}}}, "ritz or interpolation"},
       {{{"variant", {{"normalise", 1}}}}, "true or false"},
-      {{{"output", {{"vtk", "a"}}}}, "known are nodal, series"},
+      {{{"output", {{"vtk", "a"}}}}, "known are every, nodal, series, times, vtu"},
   };
   for (const auto& [changes, expected] : bad) {
     EXPECT_EQ(run(config(changes)), exit_usage) << changes;

@@ -222,6 +222,17 @@ TEST_F(RunExperiment, RunsAndCollectsAllWithoutCell) {
   EXPECT_EQ(all.rows[2].status, "ok");
 }
 
+TEST_F(RunExperiment, FilesOfARunAreBesideItsTable) {
+  run("--cell h0_tau1 --writing-cell h0_tau1 --output h0_tau1.json");
+  EXPECT_TRUE(fs::exists(folder / "h0_tau1/snapshot"));
+  run("--writing-cell h0_tau1 --output all.json");
+  EXPECT_TRUE(fs::exists(folder / "cells/fake_experiment/h0_tau1/snapshot"));
+  // Without a table there is no place for them.
+  const auto before = files().size();
+  run("--cell h0_tau1 --writing-cell h0_tau1");
+  EXPECT_EQ(files().size(), before);
+}
+
 TEST_F(RunExperiment, WritesToStandardOutputWithoutOutput) {
   const nlohmann::json json = nlohmann::json::parse(run("--levels 0 --steps 0").out);
   EXPECT_EQ(table_from_json(json, "stdout").rows.size(), 1u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An experiment without a flow: its errors are the formula h^2 + tau^3 on a grid of four cells. Its own
-// options make a cell fail, run out of memory, wait, or say how many threads the process has.
+// options make a cell fail, run out of memory, write a file, wait, or say how many threads the process has.
 #include <cholmod.h>
 #include <unistd.h>
 
@@ -15,7 +15,7 @@ namespace esfem {
 namespace {
 
 struct FakeOptions {
-  std::string failing_cell, memory_cell;
+  std::string failing_cell, memory_cell, writing_cell;
   int milliseconds = 0;
 };
 
@@ -44,10 +44,14 @@ int thread_count() {
   return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
 }
 
-Row run(const Row& planned, const std::string& name, const FakeOptions& fake) {
+Row run(const Row& planned, const std::string& name, const std::string& folder, const FakeOptions& fake) {
   usleep(1000 * fake.milliseconds);
   if (name == fake.failing_cell) throw NumericsError("step 3, t = 0.3: element 7 is degenerate");
   if (name == fake.memory_cell) throw std::bad_alloc();
+  if (name == fake.writing_cell && !folder.empty()) {
+    std::filesystem::create_directories(folder);
+    write_file(folder + "/snapshot", "as on the day");
+  }
   Row row = planned;
   row.nodes = std::lround(1 / (row.h * row.h));
   row.errors["u"]["nodal_L2"] = row.h * row.h + std::pow(row.tau, 3);
@@ -68,8 +72,8 @@ std::vector<Cell> cells(const Options& options, const FakeOptions& fake) {
       planned.tau = 0.1 * std::pow(2.0, -k);
       planned.steps = 1 << k;
       const std::string name = format("h%d_tau%d", level, k);
-      cells.push_back(
-          {name, std::pow(4.0, level) * planned.steps, [=] { return run(planned, name, fake); }, planned});
+      cells.push_back({name, std::pow(4.0, level) * planned.steps,
+                       [=](const std::string& folder) { return run(planned, name, folder, fake); }, planned});
     }
   return cells;
 }
@@ -87,6 +91,7 @@ int main(int argc, char** argv) {
   experiment.add_options = [&](CLI::App& app) {
     app.add_option("--failing-cell", fake.failing_cell)->group("Fake");
     app.add_option("--memory-cell", fake.memory_cell)->group("Fake");
+    app.add_option("--writing-cell", fake.writing_cell)->group("Fake");
     app.add_option("--milliseconds", fake.milliseconds)->group("Fake");
   };
   experiment.cells = [&](const Options& options) { return cells(options, fake); };

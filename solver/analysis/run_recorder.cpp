@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/analysis/run_recorder.hpp"
+
+#include <algorithm>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+namespace {
+
+const Field* find(const std::vector<PointField>& fields, const std::string& name) {
+  for (const PointField& field : fields)
+    if (field.name == name) return &field.values;
+  return nullptr;
+}
+
+}  // namespace
+
+RunRecorder::RunRecorder(const SurfaceSpace& space, SnapshotPlan plan)
+    : space_(space), plan_(std::move(plan)), curvature_(space) {
+  for (std::size_t i = 1; i < plan_.times.size(); ++i)
+    if (!(plan_.times[i] > plan_.times[i - 1]))
+      throw InputError(format("snapshot times: found %g after %g, expected increasing times", plan_.times[i],
+                              plan_.times[i - 1]));
+  if (!plan_.pvd.empty()) collection_.emplace(plan_.pvd, space.degree(), space.elements());
+}
+
+void RunRecorder::record(int n, double t, const Field& x, std::vector<PointField> fields) {
+  Series step;
+  record_geometry(space_, t, x, step);
+  const Field* nu = find(fields, "nu");
+  const Field* H = find(fields, "H");
+  if (nu) record_normal_length(*nu, step);
+  const bool writes = is_due(n, t);
+  if (writes || !H) curvature_.compute(x);
+  record_curvature(space_, x, H ? *H : curvature_.H(), step);
+
+  for (const auto& [name, values] : step) series_[name].push_back(values.front());
+  newest_ = {t, x, std::move(fields)};
+  if (writes) write_newest();
+}
+
+bool RunRecorder::is_due(int n, double t) {
+  if (!collection_) return false;
+  bool due = n == 0 || (plan_.every > 0 && n % plan_.every == 0);
+  const double slack = 1e-9 * std::abs(t);
+  for (; next_time_ < plan_.times.size() && plan_.times[next_time_] <= t + slack; ++next_time_) due = true;
+  return due;
+}
+
+void RunRecorder::write_newest() {
+  std::vector<PointField> fields = newest_.fields;
+  if (!find(fields, "nu")) fields.push_back({"nu", curvature_.nu()});
+  if (!find(fields, "H")) fields.push_back({"H", curvature_.H()});
+  fields.push_back({"kappa", curvature_.kappa()});
+  snapshots_.push_back({newest_.t, collection_->add(newest_.t, newest_.x, fields)});
+}
+
+void RunRecorder::finish() {
+  if (!collection_ || empty() || (!snapshots_.empty() && snapshots_.back().t == newest_.t)) return;
+  curvature_.compute(newest_.x);
+  write_newest();
+}
+
+}  // namespace esfem

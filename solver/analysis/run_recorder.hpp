@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/analysis/diagnostics.hpp"
+#include "solver/flows/discrete_curvature.hpp"
+#include "solver/mesh/write_vtu.hpp"
+
+namespace esfem {
+
+/// When a run's surface is written: at the first step at or after each of `times` and at every `every`-th
+/// step (0: none); in any case at the start and at the end.
+struct SnapshotPlan {
+  std::string pvd;  ///< the collection, "run.pvd"; empty: no snapshots are wanted
+  std::vector<double> times;
+  int every = 0;
+};
+
+/// Keeps what is seen of a run on one mesh: a time series, snapshots, and the newest surface. A step that
+/// cannot be recorded leaves no trace in them.
+class RunRecorder {
+ public:
+  /// The newest surface with its nodal fields.
+  struct Surface {
+    double t = 0;
+    Field x;
+    std::vector<PointField> fields;
+  };
+
+  /// The space must outlive the recorder. Throws InputError when the times of the plan are not increasing.
+  RunRecorder(const SurfaceSpace& space, SnapshotPlan plan);
+
+  /// Records step n at time t: the flow's own nodal fields (v, nu, H, ..), completed by kappa, nu and H of
+  /// the discrete surface where it has none. Series: those of record_geometry; max_H and willmore_energy from
+  /// H; min_nu and max_nu where the flow has nu of its own.
+  void record(int n, double t, const Field& x, std::vector<PointField> fields);
+
+  /// Writes the newest surface as the last snapshot, unless it is written.
+  void finish();
+
+  Series& series() { return series_; }
+  /// Whether a step has been recorded.
+  bool empty() const { return newest_.x.size() == 0; }
+  const Surface& newest() const { return newest_; }
+
+  struct Snapshot {
+    double t;
+    std::string file;  ///< without folder
+  };
+  const std::vector<Snapshot>& snapshots() const { return snapshots_; }
+
+ private:
+  bool is_due(int n, double t);
+  void write_newest();
+
+  const SurfaceSpace& space_;
+  SnapshotPlan plan_;
+  std::size_t next_time_ = 0;
+  std::optional<SnapshotCollection> collection_;
+  DiscreteCurvature curvature_;
+  Series series_;
+  Surface newest_;
+  std::vector<Snapshot> snapshots_;
+};
+
+}  // namespace esfem

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solver/analysis/diagnostics.hpp"
+#include "solver/analysis/table.hpp"
+#include "solver/mesh/generate.hpp"
+
+namespace esfem {
+namespace {
+
+TEST(Profile, OfTheDumbbell) {
+  Mesh mesh = lagrange_mesh(generate_mesh(dumbbell(), 0.1), 2);
+  project_nodes(mesh, dumbbell());
+  // A quarter turn about the x3 axis changes nothing, a shift of the whole surface off the axis hardly
+  // anything.
+  for (double shift : {0.0, 0.01}) {
+    Field x = mesh.nodes;
+    x.col(0).array() += shift;
+    Series series;
+    record_profile(x, series);
+    // r² = 0.04 + 2 s (199/200 - s), s = x3²: least at s = 0, largest at s = 199/400, zero at the tips.
+    EXPECT_NEAR(series["neck_radius"][0], 0.2, 1e-6 + 0.05 * shift);
+    EXPECT_NEAR(series["widest_radius"][0], std::sqrt(0.04 + 2 * std::pow(199.0 / 400, 2)), 1e-4 + shift);
+    EXPECT_NEAR(series["tip"][0], std::sqrt(199.0 / 400 + std::sqrt(std::pow(199.0 / 400, 2) + 0.02)), 1e-3);
+  }
+}
+
+TEST(PinchTime, IsExactWhereTheSquaredNeckRadiusIsAParabola) {
+  Series series;
+  for (double t : {0.0, 0.05, 0.06, 0.068}) {
+    series["t"].push_back(t);
+    series["neck_radius"].push_back(std::sqrt((0.08 - t) * (t + 0.5)));
+  }
+  ASSERT_TRUE(pinch_time(series));
+  EXPECT_NEAR(*pinch_time(series), 0.08, 1e-12);
+  // What happens when the neck is nearly gone does not count.
+  for (double t : {0.079, 0.085}) {
+    series["t"].push_back(t);
+    series["neck_radius"].push_back(0.02);
+  }
+  EXPECT_NEAR(*pinch_time(series), 0.08, 1e-12);
+}
+
+TEST(PinchTime, OfTheAxisymmetricReference) {
+  const auto reference =
+      read_json(std::string(ESFEM_SOURCE_DIR) + "/reference/independent/dumbbell_axisymmetric.json");
+  const double pinch = reference["pinch"];
+  Series series;
+  for (const auto& row : reference["rows"]) {
+    if (row[0].get<double>() > 0.0805) break;
+    series["t"].push_back(row[0]);
+    series["neck_radius"].push_back(row[1]);
+  }
+  ASSERT_EQ(series["t"].size(), 17u) << "0, 0.005, .., 0.08";
+  EXPECT_NEAR(*pinch_time(series), pinch, 1.5e-4);
+}
+
+TEST(PinchTime, IsNotThereWithoutAPinch) {
+  const auto of = [](std::vector<double> radius) {
+    Series series;
+    for (double r : radius) {
+      series["t"].push_back(0.01 * series["t"].size());
+      series["neck_radius"].push_back(r);
+    }
+    return pinch_time(series);
+  };
+  EXPECT_FALSE(of({0.2, 0.05})) << "too few steps";
+  EXPECT_FALSE(of({0.2, 0.19, 0.18, 0.17})) << "still wide";
+  EXPECT_FALSE(of({0.2, 0.05, 0.06, 0.07})) << "opens";
+  EXPECT_TRUE(of({0.2, 0.09, 0.08, 0.06}));
+  // Bent upwards: the line through the last two, here of slope -1 a step.
+  EXPECT_NEAR(*of({2, std::sqrt(3.5), std::sqrt(1.5), std::sqrt(0.5)}), 0.035, 1e-12);
+}
+
+}  // namespace
+}  // namespace esfem

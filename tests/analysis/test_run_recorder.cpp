@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "solver/analysis/run_recorder.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+
+struct RunRecorderOnASphere : testing::Test {
+  fs::path folder = fs::path(testing::TempDir()) / ("esfem_recorder_" + std::to_string(getpid()));
+  std::string pvd = (folder / "run.pvd").string();
+  Mesh mesh = lagrange_mesh(icosphere(1, 2), 2);
+  RunRecorderOnASphere() { project_nodes(mesh, sphere(1)); }
+  ~RunRecorderOnASphere() override { fs::remove_all(folder); }
+
+  static std::vector<double> times(const RunRecorder& recorder) {
+    std::vector<double> list;
+    for (const RunRecorder::Snapshot& snapshot : recorder.snapshots()) list.push_back(snapshot.t);
+    return list;
+  }
+};
+
+TEST_F(RunRecorderOnASphere, RecordsWhatTheFlowHasAndComputesTheRest) {
+  const SurfaceSpace space(mesh);
+  RunRecorder recorder(space, {});
+  EXPECT_TRUE(recorder.empty());
+  recorder.record(0, 0, mesh.nodes, {{"v", mesh.nodes}});
+  EXPECT_NEAR(recorder.series()["max_H"][0], 2, 0.15) << "of the discrete surface";
+  EXPECT_EQ(recorder.series().count("min_nu"), 0u);
+  EXPECT_EQ(recorder.newest().fields.size(), 1u);
+
+  RunRecorder with_own(space, {});
+  const Field H = Field::Constant(space.dofs(), 1, 3);
+  with_own.record(0, 0, mesh.nodes, {{"nu", 0.9 * mesh.nodes}, {"H", H}});
+  EXPECT_EQ(with_own.series()["max_H"][0], 3) << "the flow's own";
+  EXPECT_NEAR(with_own.series()["willmore_energy"][0], 0.5 * 9 * 4 * std::acos(-1.0), 1e-2);
+  EXPECT_NEAR(with_own.series()["min_nu"][0], 0.9, 1e-12);
+  EXPECT_TRUE(with_own.snapshots().empty());
+}
+
+TEST_F(RunRecorderOnASphere, WritesSnapshotsAsPlanned) {
+  const SurfaceSpace space(mesh);
+  const auto run = [&](SnapshotPlan plan) {
+    RunRecorder recorder(space, std::move(plan));
+    for (int n = 0; n <= 7; ++n) recorder.record(n, 0.1 * n, mesh.nodes, {});
+    recorder.finish();
+    recorder.finish();
+    return times(recorder);
+  };
+  EXPECT_THAT(run({pvd, {}, 0}), ElementsAre(0, 0.1 * 7));
+  EXPECT_THAT(run({pvd, {}, 3}), ElementsAre(0, 0.1 * 3, 0.1 * 6, 0.1 * 7));
+  EXPECT_THAT(run({pvd, {0.2, 0.41, 5}, 0}), ElementsAre(0, 0.1 * 2, 0.1 * 5, 0.1 * 7));
+  EXPECT_THAT(run({pvd, {0.3, 0.31, 0.32}, 0}), ElementsAre(0, 0.1 * 3, 0.1 * 4, 0.1 * 7)) << "once a step";
+  EXPECT_THAT(run({"", {0.3}, 2}), ElementsAre());
+  EXPECT_THROW(run({pvd, {0.3, 0.3}, 0}), InputError);
+  EXPECT_TRUE(fs::exists(folder / "run_0003.vtu"));
+}
+
+TEST_F(RunRecorderOnASphere, AStepThatCannotBeRecordedLeavesNoTrace) {
+  const SurfaceSpace space(mesh);
+  RunRecorder recorder(space, {pvd, {}, 1});
+  recorder.record(0, 0, mesh.nodes, {});
+  Field folded = mesh.nodes;
+  folded.row(mesh.elements(5, 3)) = 10 * folded.row(mesh.elements(5, 1));
+  EXPECT_THROW(recorder.record(1, 0.1, folded, {}), NumericsError);
+  for (const auto& [name, values] : recorder.series()) EXPECT_EQ(values.size(), 1u) << name;
+  EXPECT_EQ(recorder.newest().t, 0);
+  recorder.finish();
+  EXPECT_THAT(times(recorder), ElementsAre(0));
+}
+
+}  // namespace
+}  // namespace esfem
