@@ -201,7 +201,7 @@ std::map<std::string, double> values(const Series& series) {
   for (const char* name : {"widest_radius", "tip", "max_H", "max_nu", "worst_angle"}) {
     if (series.count(name)) add(std::string(name) + "_at_0.06", value_at(series, name, 0.06));
   }
-  for (const char* name : {"max_nu", "min_nu", "worst_angle", "neck_radius", "t"}) {
+  for (const char* name : {"max_H", "max_nu", "min_nu", "worst_angle", "neck_radius", "t"}) {
     if (series.count(name)) add(std::string("last_") + name, series.at(name).back());
   }
   if (series.count("max_nu")) {
