@@ -34,7 +34,7 @@ DASHES = {"solid": "-", "dashed": (0, (5, 2)), "dotted": (0, (1, 1.3)), "dash-do
           "sparse": (0, (1, 3))}
 # Colours of Okabe and Ito, which colour-blind readers tell apart; the dashes say it again in greyscale.
 LINES = {"dziuk": {"color": "#D55E00", "linestyle": DASHES["dashed"]},
-         "kll": {"color": "#0072B2", "linestyle": DASHES["solid"]},
+         "kll": {"color": "#0072B2", "linestyle": DASHES["solid"], "zorder": 1.9},  # below the others' dashes
          "kll_normalised": {"color": "#009E73", "linestyle": DASHES["dash-dot"]},
          "kll_alpha1": {"color": "#56B4E9", "linestyle": DASHES["short"]},
          "kll_alpha10": {"color": "#E69F00", "linestyle": DASHES["dash-dot-dot"]},
@@ -282,10 +282,10 @@ def _legend(settings, names):
     return {LABELS[method]: LINES[method] for method in shown}
 
 
-def _end(settings, pinch):
-    """The last time of all runs, the pinch at least."""
-    times = [series(row, "t") for setting in settings for row in setting.runs.values()]
-    return max([pinch] + [t[-1] for t, _ in filter(None, times)])
+def _end(settings, name, pinch):
+    """The last time of all runs that have a series, the pinch at least."""
+    found = [series(row, name) for setting in settings for row in setting.runs.values()]
+    return max([pinch] + [t[-1] for t, _ in filter(None, found)])
 
 
 def curvature_figure(settings, notes):
@@ -301,7 +301,7 @@ def curvature_figure(settings, notes):
     t, H, pinch = reference_curvature(ZOOM)
     legend[f"axisymmetric reference, pinch at $t = {pinch:.4f}$"] = REFERENCE_LINE
     figure, grid = time_series.panels(headings, legend, notes)
-    end = _end(settings, pinch)
+    end = _end(settings, "max_H", pinch)
     for setting, (whole, blow_up) in zip(settings, grid):
         time_series.scale(whole, _draw_runs(whole, setting, "max_H", (0, end)), logarithmic=True)
         values = _draw_runs(blow_up, setting, "max_H", (ZOOM, end))
@@ -327,7 +327,7 @@ def normals_figure(settings, notes):
     if not settings:
         return None
     figure, grid = time_series.panels([[setting.heading(()), ""] for setting in settings], legend, notes)
-    end = _end(settings, reference_curvature(ZOOM)[2])
+    end = _end(settings, "max_nu", reference_curvature(ZOOM)[2])
     for setting, (whole, blow_up) in zip(settings, grid):
         for axes, start in ((whole, 0), (blow_up, ZOOM)):
             values = np.concatenate([_draw_runs(axes, setting, name, (start, end)) for name in names])
