@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command line that all plotting scripts share."""
 import argparse
+import os
 import sys
 
 import style
-from table import TableError, read_table
+from table import TableError, has_series, read_table, succeeded
 
 NORMS = ("nodal_L2", "nodal_H1", "nodal_H1_semi", "lifted_L2", "lifted_H1", "lifted_H1_semi")
 
@@ -14,21 +15,25 @@ class _Parser(argparse.ArgumentParser):
         sys.exit(f"{self.prog}: {message} (--help lists what is accepted)")  # exit 1: argparse would take 2
 
 
-def run(experiment, draw, description, default_norm):
+def run(experiment, draw, description, default_norm=None):
     """The main function of a plotting script: `SCRIPT TABLE FOLDER [--norm NORM]`.
 
     `draw(table, norm)` yields (name, figure), name being e.g. "kll19/fig13_1"; each goes to FOLDER as PDF and PNG.
+    Without a default norm there is no --norm: the figures show series and snapshots, of singular runs as well, and
+    `draw(table, folder)` gets the folder of the table, where snapshots are.
     Anything wrong with the input is one line on standard error and exit 1.
     """
     parser = _Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", help=f"results/PRESET/{experiment}.json")
     parser.add_argument("folder", help="where figures go, e.g. figures")
-    parser.add_argument("--norm", choices=NORMS, default=default_norm, metavar="NORM",
-                        help=f"{', '.join(NORMS)} (default: {default_norm})")
+    if default_norm:
+        parser.add_argument("--norm", choices=NORMS, default=default_norm, metavar="NORM",
+                            help=f"{', '.join(NORMS)} (default: {default_norm})")
     arguments = parser.parse_args()
     try:
-        table = read_table(arguments.table, experiment)
-        for name, figure in draw(table, arguments.norm):
+        table = read_table(arguments.table, experiment, succeeded if default_norm else has_series)
+        figures = draw(table, arguments.norm if default_norm else os.path.dirname(arguments.table))
+        for name, figure in figures:
             style.save(figure, f"{arguments.folder}/{name}")
     except TableError as error:
         sys.exit(f"{parser.prog}: {arguments.table}: {error}")

@@ -13,6 +13,7 @@ from matplotlib import ticker  # noqa: E402  (the backend comes first)
 
 CM = 1 / 2.54
 WIDTH = 17 * CM  # text width of a page, in inches
+RASTER_DPI = 400  # of pictures inside a PDF; lines and letters stay vectors
 
 # Shapes that stay apart at 4 pt; neighbours in the list differ most.
 MARKERS = ("o", "s", "^", "D", "v", "*", "<", "p", ">", "x")
@@ -83,11 +84,11 @@ def save(figure, stem):
     folder, name = os.path.split(os.path.abspath(stem))
     os.makedirs(folder, exist_ok=True)
     written = []
-    for kind, metadata in (("pdf", {"CreationDate": None}), ("png", {})):
+    for kind, options in (("pdf", {"dpi": RASTER_DPI, "metadata": {"CreationDate": None}}), ("png", {})):
         target = f"{stem}.{kind}"
         unfinished = os.path.join(folder, f".{name}.{kind}.{os.getpid()}.tmp")
         try:
-            figure.savefig(unfinished, format=kind, metadata=metadata)
+            figure.savefig(unfinished, format=kind, **options)
             os.replace(unfinished, target)
         finally:
             if os.path.exists(unfinished):

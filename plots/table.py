@@ -3,6 +3,8 @@
 import json
 import math
 
+import numpy as np
+
 SCHEMA = "esfem-table/1"
 
 
@@ -10,11 +12,13 @@ class TableError(Exception):
     """A table cannot be drawn; the message says what was found where, and what was expected."""
 
 
-def read_table(path, experiment=None):
+def read_table(path, experiment=None, usable=None):
     """The table in `path` as a dictionary, checked as far as figures need it. Raises TableError.
 
-    `experiment`: the stem that the table must come from, if it matters.
+    `experiment`: the stem that the table must come from, if it matters. `usable`: which rows are drawn, `succeeded`
+    unless said otherwise.
     """
+    usable = usable or succeeded
     try:
         with open(path, encoding="utf-8") as file:
             table = json.load(file)
@@ -33,16 +37,16 @@ def read_table(path, experiment=None):
     if not isinstance(rows, list) or not rows:
         raise TableError("no rows")
     for i, row in enumerate(rows):
-        _check_row(row, f"rows[{i}]")
-    if not any(succeeded(row) for row in rows):
+        _check_row(row, f"rows[{i}]", usable)
+    if not any(usable(row) for row in rows):
         raise TableError(f"none of {len(rows)} runs succeeded; the first: {rows[0]['status']}")
     return table
 
 
-def _check_row(row, place):
+def _check_row(row, place, usable):
     if not isinstance(row, dict) or not isinstance(row.get("status"), str):
         raise TableError(f"{place}: expected an object with a status")
-    if not succeeded(row):
+    if not usable(row):
         return  # a run that failed early may not even have a mesh
     for key in ("h", "nodes", "tau"):
         value = row.get(key)
@@ -56,3 +60,26 @@ def _check_row(row, place):
 def succeeded(row):
     """Whether the run of this row finished."""
     return row["status"] == "ok"
+
+
+def has_series(row):
+    """Whether everything that the run wrote is good: it finished, or stopped where the flow becomes singular."""
+    return succeeded(row) or row["status"].startswith("singular")
+
+
+def series(row, name):
+    """(times, values) of one quantity as arrays, null being NaN; None when the row does not have it.
+
+    Raises TableError when times and values are no lists of numbers, or not equally many.
+    """
+    cell, columns = row.get("cell", "?"), row.get("series")
+    if not isinstance(columns, dict) or name not in columns:
+        return None
+    try:
+        t, values = (np.array([math.nan if value is None else value for value in columns[key]], dtype=float)
+                     for key in ("t", name))
+    except (KeyError, TypeError, ValueError) as error:
+        raise TableError(f"{cell}: the series {name} or its t is missing or no list of numbers") from error
+    if len(t) != len(values) or len(t) == 0:
+        raise TableError(f"{cell}: the series {name} has {len(values)} values at {len(t)} times")
+    return t, values

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tests of the convergence figures: `python3 plots/test_plots.py`."""
+"""Tests of the figures: `python3 plots/test_plots.py`."""
 import copy
 import json
 import math
@@ -11,13 +11,18 @@ import tempfile
 import unittest
 import unittest.mock
 
+import meshio
 import numpy as np
+from matplotlib.figure import Figure
 
+import mcf_dumbbell
 import style
+import surfaces
 from convergence import convergence_figure, curves
 from mcf_sphere import QUANTITIES, draw
 from script import run
-from table import SCHEMA, TableError, read_table
+from surfaces import Surface, read_surface, view
+from table import SCHEMA, TableError, has_series, read_table, series
 
 FOLDER = os.path.dirname(os.path.abspath(__file__))
 SCRIPT = os.path.join(FOLDER, "mcf_sphere.py")
@@ -215,6 +220,336 @@ class Script(unittest.TestCase):
     def test_read_table_raises_its_own_error(self):
         with self.assertRaises(TableError):
             read_table(self.folder)
+
+    def test_singular_runs_count_only_where_series_are_drawn(self):
+        for row in self.table["rows"]:
+            row["status"] = "singular at t = 0.08 (step 27): why"
+        self.assertIn("none of 6 runs", self.complaint(self.command(self.table)))
+        path = self.command(self.table)[1]
+        self.assertEqual(len(read_table(path, usable=has_series)["rows"]), 6)
+
+
+def sphere(subdivisions, centre=(0, 0, 0)):
+    """A quadratic surface with all nodes on a unit sphere, outward."""
+    corners = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], float)
+    points = list(corners)
+    triangles = [(i, j, k) for i in (0, 1) for j in (2, 3) for k in (4, 5)]
+    triangles = [(i, j, k) if np.linalg.det(corners[[i, j, k]]) > 0 else (i, k, j) for i, j, k in triangles]
+    for level in range(subdivisions + 1):
+        middles = {}
+
+        def middle(i, j, middles=middles):
+            key = min(i, j), max(i, j)
+            if key not in middles:
+                middles[key] = len(points)
+                points.append((points[i] + points[j]) / np.linalg.norm(points[i] + points[j]))
+            return middles[key]
+
+        quadratic = [(i, j, k, middle(i, j), middle(j, k), middle(k, i)) for i, j, k in triangles]
+        if level < subdivisions:
+            triangles = [t for i, j, k, a, b, c in quadratic for t in ((i, a, c), (a, j, b), (c, b, k), (a, b, c))]
+    return Surface(np.array(points) + centre, np.array(quadratic), {})
+
+
+def polygons_drawn(surface, **options):
+    """What draw_surface paints, in its order: polygons as (k, 2) arrays, without the repeated first point."""
+    axes = Figure().add_axes([0, 0, 1, 1])
+    surfaces.draw_surface(axes, surface, view(0), **options)
+    return [path.vertices[:-1] for path in axes.collections[0].get_paths()]
+
+
+class Surfaces(unittest.TestCase):
+    def test_the_view_is_a_rotation(self):
+        for angles in ((0,), (18,), (-130, 25), (90, -90)):
+            np.testing.assert_allclose(view(*angles) @ view(*angles).T, np.eye(3), atol=1e-15)
+            self.assertAlmostEqual(np.linalg.det(view(*angles)), 1)
+        np.testing.assert_allclose(view(0)[0], [0, 0, 1], atol=1e-15)  # x3 to the right
+        self.assertLess(view(18)[2] @ [0, 0, 1], -0.1)  # x3 also goes away: its lower end is shown
+
+    def test_the_lattice_fills_the_reference_triangle(self):
+        for n in (1, 2, 5):
+            points, triangles, pieces = surfaces.lattice(n)
+            sides = points[triangles][:, 1:] - points[triangles][:, :1]
+            np.testing.assert_allclose(np.linalg.det(sides), np.full(n * n, 1 / n**2))
+            corners = np.array([[0, 0], [1, 0], [0, 1]])
+            for triangle, first, second, side, number in pieces:
+                start, end = corners[side], corners[(side + 1) % 3]
+                np.testing.assert_allclose(points[first], start + (end - start) * number / n, atol=1e-15)
+                np.testing.assert_allclose(points[second], start + (end - start) * (number + 1) / n, atol=1e-15)
+                self.assertTrue({first, second} < set(triangles[triangle]))
+            self.assertEqual(len({(side, number) for *_, side, number in pieces}), 3 * n)
+
+    def test_facets_lie_on_the_quadratic_map(self):
+        """The other route: the polynomials of degree 2 through the nodes, in monomials."""
+        def monomials(xi):
+            return np.column_stack([np.ones(len(xi)), xi, xi**2, xi[:, 0] * xi[:, 1]])
+
+        reference = np.array([[0, 0], [1, 0], [0, 1], [0.5, 0], [0.5, 0.5], [0, 0.5]])
+        nodes = np.random.default_rng(1).normal(size=(6, 3))
+        points, triangles, _ = surfaces.lattice(4)
+        expected = (monomials(points) @ np.linalg.solve(monomials(reference), nodes))[triangles]
+        for order, agrees in (((0, 1, 2, 3, 4, 5), True), ((0, 1, 2, 4, 3, 5), False)):
+            split = surfaces.facets(Surface(nodes, np.array([order]), {}), np.eye(3), 4)
+            self.assertEqual(np.allclose(split.corners, expected), agrees)
+
+    def test_gradients_of_the_shape_functions(self):
+        xi, step = np.random.default_rng(2).random((5, 2)), 1e-6
+        for count in (3, 6):
+            gradients = surfaces.shape_gradients(xi, count)
+            for d in range(2):
+                move = step * np.eye(2)[d]
+                difference = (surfaces.shape_functions(xi + move, count) - surfaces.shape_functions(xi - move, count))
+                np.testing.assert_allclose(gradients[:, d], difference / (2 * step), atol=1e-8)
+
+    def test_half_of_a_sphere_is_seen_and_covers_its_disc(self):
+        ball = sphere(3)
+        for angles in ((0,), (18,), (55, 31)):
+            split = surfaces.facets(ball, view(*angles), 4)
+            front = surfaces.faces_viewer(split.corners)
+            self.assertAlmostEqual(front.mean(), 0.5, delta=0.01)
+            sides = split.corners[front][:, 1:, :2] - split.corners[front][:, :1, :2]
+            self.assertAlmostEqual(np.linalg.det(sides).sum() / 2, math.pi, delta=0.01)
+            middles = split.corners.mean(axis=1)
+            self.assertGreater(np.sum(split.normals * middles, axis=1).min(), 0.99)
+
+    def test_every_piece_of_an_edge_belongs_to_two_elements(self):
+        split = surfaces.facets(sphere(1), view(18), 3)
+        keys, first, count = np.unique(split.edge_key, axis=0, return_index=True, return_counts=True)
+        self.assertEqual(set(count), {2})
+        self.assertEqual(len(keys), 3 * 48)  # three pieces of each of the 3/2 E edges
+        for key, i in zip(keys, first):
+            twins = split.edges[np.all(split.edge_key == key, axis=1)]
+            np.testing.assert_allclose(twins[0], twins[1][::-1], atol=1e-14)
+
+    def test_what_is_near_is_painted_last(self):
+        far, near = sphere(2), sphere(2, centre=(0, 4, 0))  # view(0) looks along -x2
+        both = Surface(np.concatenate([near.points, far.points]),
+                       np.concatenate([near.triangles, far.triangles + len(near.points)]), {})
+        alone = polygons_drawn(near)
+        together = polygons_drawn(both)
+        self.assertEqual(len(together), 2 * len(alone))
+        np.testing.assert_array_equal(together[len(alone):], alone)
+
+    def test_edges_are_drawn_once_and_only_where_asked_for(self):
+        ball = sphere(2)
+        faces, with_edges = (polygons_drawn(ball, linewidth=width) for width in (0, 0.2))
+        self.assertEqual(len(faces), surfaces.faces_viewer(surfaces.facets(ball, view(0), 3).corners).sum())
+        edges = {tuple(map(tuple, np.unique(polygon.round(12), axis=0))) for polygon in with_edges if len(polygon) == 3
+                 and np.array_equal(polygon[1], polygon[2])}
+        self.assertEqual(len(edges), len(with_edges) - len(faces))
+        window = polygons_drawn(ball, linewidth=0, window=(0.2, 0.4, -0.1, 0.1))
+        self.assertTrue(0 < len(window) < 0.1 * len(faces))
+
+    def test_few_colours_and_opaque_seams(self):
+        tones = surfaces.shade(surfaces.facets(sphere(2), view(0), 3).normals)
+        self.assertTrue(surfaces.EDGE_TONE < tones.min() and tones.max() <= 1)
+        image = np.ones((40, 50, 4)) * np.linspace(0, 1, 50)[None, :, None]
+        coloured, *offset = surfaces._colour_tones(image, 100)
+        self.assertEqual(offset, [0, 0])
+        self.assertLessEqual(len(np.unique(coloured[..., :3].reshape(-1, 3), axis=0)), surfaces.TONES)
+        self.assertTrue(np.all(np.diff(coloured[0, :, :3] @ (0.299, 0.587, 0.114)) >= 0))
+        self.assertEqual(coloured[0, 45, 3], 1)
+
+    def test_snapshots_are_read(self):
+        ball = sphere(1)
+        with tempfile.TemporaryDirectory() as folder:
+            path = folder + "/ball.vtu"
+            for kind, triangles in (("triangle6", ball.triangles), ("triangle", ball.triangles[:, :3])):
+                meshio.write(path, meshio.Mesh(ball.points, [(kind, triangles)], {"H": ball.points[:, 2]}))
+                found = read_surface(path)
+                np.testing.assert_array_equal(found.points, ball.points)
+                np.testing.assert_array_equal(found.triangles, triangles)
+                np.testing.assert_array_equal(found.data["H"], ball.points[:, 2])
+            content = pathlib.Path(path).read_bytes()
+            meshio.write(path, meshio.Mesh(ball.points, [("vertex", [[0]])]))
+            others = pathlib.Path(path).read_bytes()
+            for words, text in {"expected triangles": others, "no whole VTU file": content[:len(content) // 2]}.items():
+                pathlib.Path(path).write_bytes(text)
+                with self.assertRaisesRegex(TableError, f"ball.vtu.*{words}"):
+                    read_surface(path)
+            with self.assertRaisesRegex(TableError, "missing.vtu"):
+                read_surface(folder + "/missing.vtu")
+
+
+def dumbbell_row(method, start="cascade", tau=0.003, level=1, end=0.078, **changes):
+    t = np.arange(0, end + tau / 2, tau)
+    columns = {"t": t, "max_H": 6 / (1.1 - t / end), "worst_angle": 36 - 300 * t, "neck_radius": 0.2 * (1.05 - t / end)}
+    if method.startswith("kll"):
+        columns.update(min_nu=1 - t, max_nu=1 + 20 * t)
+    cell = f"{method}_h{level}_{start.replace(':', '')}_{tau:g}"
+    row = {"cell": cell, "method": method, "start": start, "level": level, "h": 0.18 / 2**level,
+           "nodes": 3002 if level == 0 else 10522, "tau": tau, "steps": len(t) - 1, "errors": {},
+           "status": f"singular at t = {end:g} (step {len(t)}): why", "values": {"pinch_time": end},
+           "series": {name: values.tolist() for name, values in columns.items()},
+           "snapshots": [{"t": t[n], "file": f"surfaces_{n:04d}.vtu"} for n in range(0, len(t), 2)]}
+    return {**row, **changes}
+
+
+def dumbbell_table():
+    methods = ("dziuk", "kll", "kll_normalised", "kll_alpha1", "kll_alpha10", "kll_alpha100")
+    rows = [dumbbell_row(method, end=0.072 + 0.003 * i) for i, method in enumerate(methods)]
+    rows += [dumbbell_row(method, level=0) for method in methods[:3]]
+    rows += [dumbbell_row(method, "substeps:16", tau) for method in methods[:3] for tau in (0.003, 0.0015)]
+    rows.append(dumbbell_row("kll", "substeps:16", 0.00075))
+    rows += [dumbbell_row("bgn", "none", tau, level) for tau in (0.003, 0.0015) for level in (0, 1)]
+    rows.append(dumbbell_row("bgn_p1", "none", status="failed: why", series={}, snapshots=[], h=0))
+    return {"schema": SCHEMA, "experiment": "mcf_dumbbell", "paper": "kll19", "parameters": {}, "rows": rows}
+
+
+def write_snapshots(table, folder):
+    """One small surface for all times, a little smaller at later ones."""
+    ball = sphere(1)
+    for row in table["rows"]:
+        cell = os.path.join(folder, "cells", "mcf_dumbbell", row["cell"])
+        os.makedirs(cell, exist_ok=True)
+        for entry in row["snapshots"]:
+            points = ball.points * [0.3, 0.3, 1] * (1 - 4 * entry["t"])
+            meshio.write(os.path.join(cell, entry["file"]), meshio.Mesh(points, [("triangle6", ball.triangles)]))
+
+
+def lines_of(axes):
+    return [line for line in axes.lines if len(line.get_xdata()) > 2]
+
+
+class Dumbbell(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.temporary.cleanup)
+        cls.folder = cls.temporary.name
+        cls.table = dumbbell_table()
+        write_snapshots(cls.table, cls.folder)
+        cls.figures = dict(mcf_dumbbell.draw(cls.table, cls.folder))
+
+    def test_settings_are_those_of_the_paper_and_the_most_accurate(self):
+        rows = self.table["rows"]
+        paper, good = mcf_dumbbell.paper_setting(rows), mcf_dumbbell.good_setting(rows)
+        self.assertEqual((paper.start, paper.tau, paper.nodes), ("cascade", 0.003, 10522))
+        self.assertEqual((good.start, good.tau, good.nodes), ("substeps:16", 0.0015, 10522))  # not all have 0.00075
+        self.assertEqual(list(paper.runs), [*mcf_dumbbell.LABELS][:7])
+        self.assertEqual(list(good.runs), ["dziuk", "kll", "kll_normalised", "bgn"])
+        self.assertEqual((paper.runs["bgn"]["tau"], good.runs["bgn"]["tau"]), (0.003, 0.0015))
+        finer = [*rows, dumbbell_row("bgn", "none", 0.000375)]
+        self.assertEqual(mcf_dumbbell.good_setting(finer).runs["bgn"]["tau"], 0.000375)
+        self.assertTrue(all(row["level"] == 1 for setting in (paper, good) for row in setting.runs.values()))
+        self.assertIsNone(mcf_dumbbell.good_setting([row for row in rows if row["start"] == "cascade"]))
+        self.assertIsNone(mcf_dumbbell.paper_setting([{**row, "status": "failed: why"} for row in rows]))
+
+    def test_headings_say_mesh_step_and_start(self):
+        good = mcf_dumbbell.good_setting(self.table["rows"])
+        self.assertEqual(good.heading(good.runs), r"$N = 10{,}522$, $\tau = 0.0015$, start with 16 substeps a step")
+        good.runs["bgn"] = {**good.runs["bgn"], "tau": 0.003}
+        self.assertTrue(good.heading(good.runs).endswith(r"; BGN: $\tau = 0.003$"))
+        self.assertNotIn("BGN", good.heading(("kll",)))
+        good.runs["bgn"]["nodes"] = 2632
+        self.assertTrue(good.heading(good.runs).endswith(r"; BGN: $N = 2{,}632$, $\tau = 0.003$"))
+
+    def test_snapshots_are_those_within_half_a_step(self):
+        snapshots = mcf_dumbbell.Snapshots(dumbbell_row("kll"), "results")
+        self.assertEqual([t for t, _ in snapshots.files][:2], [0, 0.006])
+        self.assertEqual(snapshots.at(0.03)[1], "results/cells/mcf_dumbbell/kll_h1_cascade_0.003/surfaces_0010.vtu")
+        self.assertIsNone(snapshots.at(0.032))
+        self.assertAlmostEqual(snapshots.last()[0], 0.078)
+        for entries in ([{"t": 0}], ["a.vtu"], [{"t": None, "file": "a.vtu"}], [{"t": 0, "file": 3}]):
+            with self.assertRaisesRegex(TableError, "kll_h1_cascade_0.003: snapshots"):
+                mcf_dumbbell.Snapshots(dumbbell_row("kll", snapshots=entries), "results")
+
+    def test_all_figures_are_there(self):
+        self.assertEqual(list(self.figures), [f"kll19/fig13_{name}" for name in ("3", "3_good_start", "4", "5", "6")])
+
+    def test_the_surfaces_have_one_scale_and_a_panel_for_each_time_and_method(self):
+        for name, columns in (("kll19/fig13_3", 3), ("kll19/fig13_3_good_start", 4)):
+            figure = self.figures[name]
+            self.assertEqual(sum(bool(axes.collections) for axes in figure.axes), 5 * columns)
+            scales = [axes.get_position().size * figure.get_size_inches() / [np.ptp(axes.get_xlim()),
+                                                                             np.ptp(axes.get_ylim())]
+                      for axes in figure.axes]
+            np.testing.assert_allclose(scales, np.full_like(scales, scales[0][0]))
+            self.assertLess(figure.get_size_inches()[1], 10)
+            own_times = [axes.texts[0].get_text() for axes in figure.axes if axes.texts]
+            self.assertEqual(own_times, ["$t = 0.072$", "$t = 0.072$", "$t = 0.078$"] if columns == 3
+                             else ["$t = 0.078$"] * 4)
+
+    def test_the_neck_says_method_time_and_radius(self):
+        titles = [axes.get_title(loc="left") for axes in self.figures["kll19/fig13_4"].axes]
+        self.assertEqual(len(titles), 3)
+        self.assertTrue(titles[0].startswith(r"(5.1), $\nu_h$ normalised, $\tau = 0.003$, first step by backward"))
+        self.assertTrue(titles[0].endswith("$t = 0.078$, neck radius 0.01"), titles[0])
+        self.assertTrue(titles[2].startswith(r"BGN, $\tau = 0.0015$"))
+
+    def test_a_method_looks_the_same_in_all_panels(self):
+        curvature, normals = (self.figures[f"kll19/fig13_{n}"] for n in (5, 6))
+        self.assertEqual([len(lines_of(axes)) for axes in curvature.axes], [7, 8, 4, 5, 7, 4])
+        self.assertEqual([len(lines_of(axes)) for axes in normals.axes], [10, 10, 4, 4])
+        for figure in (curvature, normals):
+            legend = {text.get_text(): line.get_color()
+                      for text, line in zip(figure.legends[0].get_texts(), figure.legends[0].get_lines())}
+            for label, colour in legend.items():
+                method = next((m for m, text in mcf_dumbbell.LABELS.items() if text == label), None)
+                self.assertEqual(colour, mcf_dumbbell.LINES[method]["color"] if method else "black")
+            colours = {line.get_color() for axes in figure.axes for line in lines_of(axes)}
+            self.assertEqual(colours, set(legend.values()))
+        styles = [(str(line["color"]), str(line["linestyle"])) for line in mcf_dumbbell.LINES.values()]
+        for kind in zip(*styles):
+            self.assertEqual(len(set(kind)), len(styles))
+
+    def test_the_reference_goes_through_its_rows(self):
+        with open(mcf_dumbbell.REFERENCE, encoding="utf-8") as file:
+            reference = json.load(file)
+        t, H, pinch = mcf_dumbbell.reference_curvature(0.07)
+        self.assertEqual(pinch, reference["pinch"])
+        for row in reference["rows"]:
+            if row[0] >= 0.07:
+                expected = row[reference["columns"].index("Hmax")]
+                self.assertAlmostEqual(np.interp(row[0], t, H) / expected, 1, delta=2e-3)
+        self.assertTrue(np.all(np.diff(H) > 0))
+
+    def test_failed_runs_are_counted(self):
+        notes = [text.get_text() for text in self.figures["kll19/fig13_5"].texts]
+        self.assertIn("1 of 21 runs failed: bgn_p1_h1_none_0.003.", notes)
+
+    def test_a_missing_snapshot_is_named(self):
+        row = dumbbell_row("dziuk", snapshots=[{"t": 0, "file": "gone.vtu"}])
+        with self.assertRaisesRegex(TableError, "cells/mcf_dumbbell/dziuk_h1_cascade_0.003/gone.vtu: no such"):
+            list(mcf_dumbbell.draw({"rows": [row]}, self.folder))
+
+    def test_small_tables_give_what_they_have(self):
+        rows = [dumbbell_row("dziuk", level=0), dumbbell_row("bgn", "none", level=0, snapshots=[])]
+        self.assertEqual(list(dict(mcf_dumbbell.draw({"rows": rows}, self.folder))), ["kll19/fig13_3", "kll19/fig13_5"])
+        rows = [dumbbell_row("kll", "substeps:4", 0.006, 0, end=0.03, snapshots=[], status="ok")]
+        figures = dict(mcf_dumbbell.draw({"rows": rows}, self.folder))
+        self.assertEqual(list(figures), ["kll19/fig13_5", "kll19/fig13_6"])
+        for figure in figures.values():
+            self.assertFalse(any("singular" in text.get_text() for text in figure.texts))
+            for axes in figure.axes:
+                self.assertLess(*axes.get_xlim())
+        rows = [dumbbell_row("kll", series={}, snapshots=[])]
+        with self.assertRaisesRegex(TableError, "no series"):
+            list(mcf_dumbbell.draw({"rows": rows}, self.folder))
+        for rows in ([dumbbell_row("bgn", "none")], [dumbbell_row("euler")]):
+            with self.assertRaisesRegex(TableError, "no runs"):
+                list(mcf_dumbbell.draw({"rows": rows}, self.folder))
+
+    def test_series_are_checked(self):
+        row = dumbbell_row("kll", series={"t": [0, 1, 2], "h": [1, None, 3], "area": [1, 2], "tip": "abc"})
+        np.testing.assert_array_equal(series(row, "h"), ([0, 1, 2], [1, math.nan, 3]))
+        self.assertIsNone(series(row, "volume"))
+        for name in ("area", "tip"):
+            with self.assertRaisesRegex(TableError, f"kll_h1_cascade_0.003: the series {name}"):
+                series(row, name)
+
+    def test_the_script_writes_files_and_has_no_norm(self):
+        path = os.path.join(self.folder, "table.json")
+        table = {**self.table, "rows": [dumbbell_row("kll_normalised")]}
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(table, file)
+        command = [sys.executable, os.path.join(FOLDER, "mcf_dumbbell.py"), path, os.path.join(self.folder, "figures")]
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
+        written = sorted(os.listdir(self.folder + "/figures/kll19"))
+        self.assertEqual(written, [f"fig13_{n}.{kind}" for n in (3, 4, 5, 6) for kind in ("pdf", "png")])
+        refused = subprocess.run([*command, "--norm", "nodal_L2"], capture_output=True, text=True, check=False)
+        self.assertEqual((refused.returncode, refused.stderr.count("\n")), (1, 1))
 
 
 if __name__ == "__main__":

@@ -1,0 +1,383 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures 13.3-13.6 of Kovács, Li, Lubich (2019): mean curvature flow of a dumbbell up to the pinch.
+
+Usage: python3 plots/mcf_dumbbell.py results/paper/mcf_dumbbell.json figures
+Writes figures/kll19/fig13_3 .. fig13_6.{pdf,png}, and fig13_3_good_start: the surfaces as in Figure 13.3, but with
+accurate starting values, a small step size, and the method of Barrett, Garcke and Nürnberg (BGN) beside the others.
+"""
+import json
+import math
+import os
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+import style
+import time_series
+from script import run
+from surfaces import draw_surface, extent, read_surface, view
+from table import TableError, has_series, series
+
+REFERENCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "reference", "independent",
+                         "dumbbell_axisymmetric.json")
+PAPER_TAU = 0.003
+TIMES = (0, 0.03, 0.06, 0.072)  # of Figure 13.3, before the last surface of each run
+ZOOM = 0.07  # where the blow-up begins
+
+LABELS = {"dziuk": "Dziuk", "kll": "(5.1)", "kll_normalised": r"(5.1), $\nu_h$ normalised",
+          "kll_alpha1": r"(5.1), $\alpha = 1$", "kll_alpha10": r"(5.1), $\alpha = 10$",
+          "kll_alpha100": r"(5.1), $\alpha = 100$", "bgn": "BGN", "bgn_p1": "BGN, linear elements"}
+DASHES = {"solid": "-", "dashed": (0, (5, 2)), "dotted": (0, (1, 1.3)), "dash-dot": (0, (6, 1.8, 1.2, 1.8)),
+          "dash-dot-dot": (0, (6, 1.5, 1.2, 1.5, 1.2, 1.5)), "short": (0, (2.5, 1.5)), "long": (0, (10, 2)),
+          "sparse": (0, (1, 3))}
+# Colours of Okabe and Ito, which colour-blind readers tell apart; the dashes say it again in greyscale.
+LINES = {"dziuk": {"color": "#D55E00", "linestyle": DASHES["dashed"]},
+         "kll": {"color": "#0072B2", "linestyle": DASHES["solid"], "zorder": 1.9},  # below the others' dashes
+         "kll_normalised": {"color": "#009E73", "linestyle": DASHES["dash-dot"]},
+         "kll_alpha1": {"color": "#56B4E9", "linestyle": DASHES["short"]},
+         "kll_alpha10": {"color": "#E69F00", "linestyle": DASHES["dash-dot-dot"]},
+         "kll_alpha100": {"color": "#7A6A00", "linestyle": DASHES["long"]},
+         "bgn": {"color": "#CC79A7", "linestyle": DASHES["dotted"]},
+         "bgn_p1": {"color": "#8F4B73", "linestyle": DASHES["sparse"]}}
+for line in LINES.values():
+    line["linewidth"] = 1.15
+REFERENCE_LINE = {"color": "black", "linewidth": 0.7}
+STARTS = {"cascade": "first step by backward Euler", "exact": "exact starting values"}
+
+
+@dataclass
+class Setting:
+    """Runs of different methods with the same mesh, step size and starting procedure."""
+    start: str
+    tau: float
+    nodes: int
+    runs: dict  # method -> row; those of BGN may have another step size
+
+    def steps(self):
+        """Step size and start."""
+        substeps = self.start.partition("substeps:")[2]
+        start = f"start with {substeps} substeps a step" if substeps else STARTS.get(self.start, self.start)
+        return rf"$\tau = {self.tau:.3g}$, {start}"
+
+    def heading(self, methods):
+        """Mesh, step size and start, and the numbers of those methods that have others."""
+        others = ""
+        for method, row in self.runs.items():
+            nodes = "" if row["nodes"] == self.nodes else _thousands("N", row["nodes"])
+            tau = "" if _same(row["tau"], self.tau) else rf"$\tau = {row['tau']:.3g}$"
+            if method in methods and (nodes or tau):
+                others += f"; {LABELS[method]}: " + ", ".join(filter(None, (nodes, tau)))
+        return f"{_thousands('N', self.nodes)}, {self.steps()}{others}"
+
+
+def _thousands(symbol, number):
+    return f"${symbol} = " + f"{number:,}".replace(",", "{,}") + "$"
+
+
+def paper_setting(rows):
+    """The runs of the paper: one backward Euler step at the start, tau = 0.003, the finest mesh; None if none are."""
+    candidates = _finest(rows, "cascade")
+    if not candidates:
+        return None
+    tau = min((row["tau"] for row in candidates), key=lambda tau: abs(math.log(tau / PAPER_TAU)))
+    return _setting(rows, candidates, tau, bgn_tau=tau)
+
+
+def good_setting(rows):
+    """The runs with accurate starting values on the finest mesh, with the smallest tau that most methods have."""
+    candidates = _finest(rows, "substeps")
+    if not candidates:
+        return None
+    count = {row["tau"]: sum(_same(row["tau"], other["tau"]) for other in candidates) for row in candidates}
+    return _setting(rows, candidates, min(tau for tau in count if count[tau] == max(count.values())), bgn_tau=0)
+
+
+def _same(a, b):
+    return math.isclose(a, b, rel_tol=1e-6)
+
+
+def _finest(rows, start):
+    found = [row for row in rows
+             if has_series(row) and row.get("method") in LABELS and str(row.get("start")).startswith(start)]
+    return [row for row in found if row.get("level", 0) == max(other.get("level", 0) for other in found)]
+
+
+def _setting(rows, candidates, tau, bgn_tau):
+    """The candidates with step size tau, and the runs of BGN at that level whose step size is closest to bgn_tau."""
+    runs = {row["method"]: row for row in candidates if _same(row["tau"], tau)}
+    for method in ("bgn", "bgn_p1"):
+        others = [row for row in rows if has_series(row) and row.get("method") == method
+                  and row.get("level", 0) == candidates[0].get("level", 0)]
+        if others and method not in runs:
+            runs[method] = min(others, key=lambda row: abs(row["tau"] - bgn_tau))
+    first = next(row for row in candidates if _same(row["tau"], tau))
+    return Setting(first["start"], first["tau"], first["nodes"], {m: runs[m] for m in LABELS if m in runs})
+
+
+class Snapshots:
+    """The snapshots of a run: [(t, path)] in the order of time. Raises TableError when an entry is incomplete."""
+
+    def __init__(self, row, folder):
+        cell = os.path.join(folder, "cells", "mcf_dumbbell", str(row.get("cell")))
+        try:
+            self.files = sorted((float(entry["t"]), os.path.join(cell, entry["file"]))
+                                for entry in row.get("snapshots") or [])
+        except (KeyError, TypeError, ValueError) as error:
+            raise TableError(f"{row.get('cell', '?')}: snapshots are no list of {{t, file}}") from error
+        self.tau = row["tau"]
+
+    def at(self, t):
+        """The snapshot closest to t, at most half a step away, or None."""
+        near = [file for file in self.files if abs(file[0] - t) <= 0.501 * self.tau]
+        return min(near, key=lambda file: abs(file[0] - t), default=None)
+
+    def last(self):
+        return self.files[-1] if self.files else None
+
+
+# --- Figure 13.3: the surfaces
+
+LABEL_WIDTH, TITLES, PANEL_GAP, T_LINE, PAGE = 0.26, 0.22, 0.10, 0.17, 8.0  # inches
+
+
+def surfaces_figure(setting, methods, folder):
+    """A grid of surfaces, a column for each method that has snapshots, a row for each time; None without any.
+
+    One scale for all panels. The last row shows the last surface of each run, at its own time.
+    """
+    found = {method: Snapshots(setting.runs[method], folder) for method in methods if method in setting.runs}
+    found = {method: snapshots for method, snapshots in found.items() if snapshots.files}
+    if not found:
+        return None
+    cells = [[snapshots.at(t) for snapshots in found.values()] for t in TIMES]
+    cells.append([snapshots.last() for snapshots in found.values()])
+    labels = [f"$t = {t:g}$" for t in TIMES] + ["last"]
+    rotation = view(18)
+    surfaces = [[file and read_surface(file[1]) for file in files] for files in cells]
+    boxes = [[surface and extent(surface, rotation) for surface in row] for row in surfaces]
+    shown = [i for i, row in enumerate(boxes) if any(row)]
+    figure, grid = _surface_grid([boxes[i] for i in shown], [labels[i] for i in shown],
+                                 [LABELS[method] for method in found], setting.heading(found))
+    for i, axes_row in zip(shown, grid):
+        for axes, file, surface in zip(axes_row, cells[i], surfaces[i]):
+            if surface is None:
+                continue
+            draw_surface(axes, surface, rotation)
+            if i == len(TIMES):
+                axes.text(0.5, 0, f"$t = {file[0]:.5g}$", transform=axes.transAxes, ha="center", va="top", fontsize=8)
+    return figure
+
+
+def _surface_grid(boxes, labels, titles, heading):
+    """(figure, axes[row][column]): panels of one scale, as high as what they show, and a bar for the scale."""
+    columns = len(titles)
+    width = (style.WIDTH - LABEL_WIDTH - (columns - 1) * PANEL_GAP) / columns
+    widest = max(box[1] - box[0] for row in boxes for box in row if box)
+    heights = np.array([1.02 * max(box[3] - box[2] for box in row if box) for row in boxes])
+    scale = min(0.98 * width / widest, PAGE / heights.sum())
+    heights = heights * scale
+    height = 2 * TITLES + sum(heights) + PANEL_GAP * (len(boxes) - 1) + T_LINE + 0.03
+    figure = Figure(figsize=(style.WIDTH, height))
+    figure.text(LABEL_WIDTH / style.WIDTH, 1 - 0.03 / height, heading, va="top")
+    _scale_bar(figure, scale)
+    grid, y = [], height - 2 * TITLES
+    for row, row_height, label in zip(boxes, heights, labels):
+        y -= row_height
+        figure.text(0.03 / style.WIDTH, (y + row_height / 2) / height, label, rotation=90, ha="left", va="center",
+                    fontsize=8.5)
+        grid.append([])
+        for column, title in enumerate(titles):
+            x = LABEL_WIDTH + column * (width + PANEL_GAP)
+            axes = figure.add_axes([x / style.WIDTH, y / height, width / style.WIDTH, row_height / height])
+            axes.set_axis_off()
+            box = row[column] or next(filter(None, row))
+            middle = (box[0] + box[1]) / 2, (box[2] + box[3]) / 2
+            axes.set_xlim(middle[0] - width / scale / 2, middle[0] + width / scale / 2)
+            axes.set_ylim(middle[1] - row_height / scale / 2, middle[1] + row_height / scale / 2)
+            if row is boxes[0]:
+                figure.text((x + width / 2) / style.WIDTH, (y + row_height + 0.05) / height, title, ha="center",
+                            va="bottom")
+            grid[-1].append(axes)
+        y -= PANEL_GAP
+    return figure, grid
+
+
+def _scale_bar(figure, scale, length=0.5):
+    """A bar in the upper right corner; `scale` in inches per unit of length."""
+    y = 1 - 0.11 / figure.get_size_inches()[1]
+    right, left = 1 - 0.03 / style.WIDTH, 1 - (0.03 + length * scale) / style.WIDTH
+    figure.add_artist(Line2D([left, right], [y, y], color="black", linewidth=0.8, marker="|", markersize=5))
+    figure.text(left - 0.06 / style.WIDTH, y, f"{length:g}", ha="right", va="center", fontsize=8)
+
+
+# --- Figure 13.4: the neck
+
+NECK_WINDOW = 0.36, 0.105  # half the length and half the height of the close-up
+
+
+def neck_figure(panels, folder):
+    """Close-ups of the last surface of runs: panels is [(heading, row)]; None when none has a snapshot."""
+    panels = [(heading, row, Snapshots(row, folder).last()) for heading, row in panels]
+    panels = [panel for panel in panels if panel[2]]
+    if not panels:
+        return None
+    left, right, title, gap, below = 0.5, 0.06, 0.2, 0.08, 0.36
+    width = style.WIDTH - left - right
+    panel_height = width * NECK_WINDOW[1] / NECK_WINDOW[0]
+    height = len(panels) * (title + panel_height + gap) + below
+    figure = Figure(figsize=(style.WIDTH, height))
+    for i, (heading, row, (t, path)) in enumerate(panels):
+        y = height - (i + 1) * (title + panel_height) - i * gap
+        axes = figure.add_axes([left / style.WIDTH, y / height, width / style.WIDTH, panel_height / height])
+        surface = read_surface(path)
+        window = (-NECK_WINDOW[0], NECK_WINDOW[0], -NECK_WINDOW[1], NECK_WINDOW[1])
+        draw_surface(axes, surface, view(0), facets_per_side=8, linewidth=0.5, window=window)
+        axes.set_xlim(window[:2])
+        axes.set_ylim(window[2:])
+        axes.set_ylabel("$x_1$", labelpad=1)
+        radius = _value_at(row, "neck_radius", t)
+        neck = "" if radius is None else f", neck radius {radius:.3g}"
+        axes.set_title(f"{heading}: $t = {t:.5g}${neck}", loc="left", pad=3)
+        if i < len(panels) - 1:
+            axes.tick_params(labelbottom=False)
+    axes.set_xlabel("$x_3$", labelpad=1)
+    return figure
+
+
+def _value_at(row, name, t):
+    found = series(row, name)
+    return None if found is None else found[1][np.argmin(abs(found[0] - t))]
+
+
+# --- Figures 13.5 and 13.6: curvature, mesh quality and length of the normal over time
+
+def reference_curvature(start):
+    """(t, max H, pinch time T) of the axisymmetric reference from a time `start` on.
+
+    Between its rows, H at the neck times sqrt(T - t), which varies slowly, is interpolated; so is max H as long as it
+    is attained elsewhere.
+    """
+    with open(REFERENCE, encoding="utf-8") as file:
+        reference = json.load(file)
+    columns = dict(zip(reference["columns"], np.array(reference["rows"]).T))
+    pinch = reference["pinch"]
+    remaining = np.geomspace(pinch - start, pinch - columns["t"][-1], 500)
+    t = pinch - remaining
+    scaled = columns["H_neck"] * np.sqrt(pinch - columns["t"])
+    neck = np.interp(-np.log(remaining), -np.log(pinch - columns["t"]), scaled) / np.sqrt(remaining)
+    elsewhere = columns["z_of_Hmax"] > 0
+    times, values = columns["t"][elsewhere], columns["Hmax"][elsewhere]
+    slope = (values[-1] - values[-2]) / (times[-1] - times[-2])
+    bulge = np.interp(t, times, values) + slope * np.clip(t - times[-1], 0, None)
+    return t, np.maximum(neck, bulge), pinch
+
+
+def _legend(settings, names):
+    """{label: line style} of the methods that have one of these series."""
+    shown = [method for method in LABELS
+             if any(method in setting.runs and any(series(setting.runs[method], name) for name in names)
+                    for setting in settings)]
+    return {LABELS[method]: LINES[method] for method in shown}
+
+
+def _end(settings, name, pinch):
+    """The last time of all runs that have a series, the pinch at least."""
+    found = [series(row, name) for setting in settings for row in setting.runs.values()]
+    return max([pinch] + [t[-1] for t, _ in filter(None, found)])
+
+
+def curvature_figure(settings, notes):
+    """Figure 13.5: max H of all methods, its blow-up beside the axisymmetric reference, and below the worst angle.
+
+    None without such series.
+    """
+    legend = _legend(settings, ("max_H", "worst_angle"))
+    if not legend:
+        return None
+    headings = [[setting.heading(setting.runs), ""] for setting in settings]
+    headings.append([setting.steps() for setting in settings])
+    t, H, pinch = reference_curvature(ZOOM)
+    legend[f"axisymmetric reference, pinch at $t = {pinch:.4f}$"] = REFERENCE_LINE
+    figure, grid = time_series.panels(headings, legend, notes)
+    end = _end(settings, "max_H", pinch)
+    for setting, (whole, blow_up) in zip(settings, grid):
+        time_series.scale(whole, _draw_runs(whole, setting, "max_H", (0, end)), logarithmic=True)
+        values = _draw_runs(blow_up, setting, "max_H", (ZOOM, end))
+        shown = H <= 1.5 * max(values, default=20)
+        blow_up.plot(t[shown], H[shown], **REFERENCE_LINE)
+        time_series.scale(blow_up, np.append(values, H[shown]), logarithmic=True)
+        _limit_times(whole, blow_up, end)
+        blow_up.axvline(pinch, color="0.5", linewidth=0.6, zorder=0)
+        whole.set_ylabel(r"$\max\,|H_h|$", labelpad=2)
+    for setting, axes in zip(settings, grid[-1]):
+        _draw_runs(axes, setting, "worst_angle", (0, end))
+        axes.set_xlim(0, 1.02 * end)
+        axes.set_ylim(0, None)
+    grid[-1][0].set_ylabel("worst angle (degrees)", labelpad=4)
+    return figure
+
+
+def normals_figure(settings, notes):
+    """Figure 13.6: min and max of the length of the computed normal, and their blow-up; None without such series."""
+    names = ("min_nu", "max_nu")
+    legend = _legend(settings, names)
+    settings = [setting for setting in settings if _legend([setting], names)]
+    if not settings:
+        return None
+    figure, grid = time_series.panels([[setting.heading(()), ""] for setting in settings], legend, notes)
+    end = _end(settings, "max_nu", reference_curvature(ZOOM)[2])
+    for setting, (whole, blow_up) in zip(settings, grid):
+        for axes, start in ((whole, 0), (blow_up, ZOOM)):
+            values = np.concatenate([_draw_runs(axes, setting, name, (start, end)) for name in names])
+            time_series.scale(axes, values, logarithmic=max(values, default=1) > 10)
+        _limit_times(whole, blow_up, end)
+        whole.set_ylabel(r"$\min\,|\nu_h|$ and $\max\,|\nu_h|$", labelpad=2)
+    return figure
+
+
+def _draw_runs(axes, setting, name, span):
+    """Draws a quantity of all runs; returns the values in `span`."""
+    return np.concatenate([time_series.draw_series(axes, row, name, LINES[method], span)
+                           for method, row in setting.runs.items()])
+
+
+def _limit_times(whole, blow_up, end):
+    whole.set_xlim(0, 1.02 * end)
+    blow_up.set_xlim(ZOOM, end + 0.03 * (end - ZOOM))
+
+
+def draw(table, folder):
+    """Yields (name, figure) for what the table has; `folder` is the table's. TableError when there is nothing."""
+    rows = table["rows"]
+    paper, good = paper_setting(rows), good_setting(rows)
+    settings = [setting for setting in (paper, good) if setting]
+    if not settings:
+        raise TableError("no runs with the start \"cascade\" or \"substeps:K\"")
+    columns = ("dziuk", "kll", "kll_normalised")
+    close_ups = [(LABELS["kll_normalised"] + ", " + setting.steps(), setting.runs["kll_normalised"])
+                 for setting in settings if "kll_normalised" in setting.runs]
+    close_ups += [(rf"BGN, $\tau = {setting.runs['bgn']['tau']:.3g}$", setting.runs["bgn"])
+                  for setting in settings[-1:] if "bgn" in setting.runs]
+    notes = time_series.failure_notes(rows)
+    if any(row["status"] != "ok" for setting in settings for row in setting.runs.values()):
+        notes = ["Lines end at the last step before the run stops as singular.", *notes]
+    make = {
+        "kll19/fig13_3": lambda: paper and surfaces_figure(paper, columns, folder),
+        "kll19/fig13_3_good_start": lambda: good and surfaces_figure(good, (*columns, "bgn"), folder),
+        "kll19/fig13_4": lambda: neck_figure(close_ups, folder),
+        "kll19/fig13_5": lambda: curvature_figure(settings, notes),
+        "kll19/fig13_6": lambda: normals_figure(settings, notes),
+    }
+    nothing = True
+    for name, figure in ((name, make[name]()) for name in make):
+        if figure:
+            nothing = False
+            yield name, figure
+    if nothing:
+        raise TableError("no series and no snapshots of these runs")
+
+
+if __name__ == "__main__":
+    run("mcf_dumbbell", draw, __doc__)
