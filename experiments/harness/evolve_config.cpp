@@ -195,8 +195,8 @@ Surfaces and their defaults:
 )" + named_surfaces_help() +
          R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H) of the last step, one row a node
 in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
-(degrees), worst_radius_ratio, for mean_curvature also min_nu, max_nu. Snapshots have v, nu, H, and kappa = M^-1 A x; what
-the flow does not have is computed from the discrete surface.
+(degrees), worst_radius_ratio, for mean_curvature also min_nu, max_nu. Snapshots have v, nu, H, and kappa = M^-1 A x. Where
+the flow has no nu, max_H and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
 A run that meets a singularity writes what it has computed, says so, and ends with exit code 2.)";
 }
 

@@ -32,9 +32,9 @@ void RunRecorder::record(int n, double t, const Field& x, std::vector<PointField
   const Field* nu = find(fields, "nu");
   const Field* H = find(fields, "H");
   if (nu) record_normal_length(*nu, step);
-  const bool writes = is_due(n, t);
-  if (writes || !H) curvature_.compute(x);
-  record_curvature(space_, x, H ? *H : curvature_.H(), step);
+  const bool writes = is_due(n, t), evolves_curvature = nu && H;
+  if (writes || !evolves_curvature) curvature_.compute(x);
+  record_curvature(space_, x, evolves_curvature ? *H : curvature_.H(), step);
 
   for (const auto& [name, values] : step) series_[name].push_back(values.front());
   newest_ = {t, x, std::move(fields)};

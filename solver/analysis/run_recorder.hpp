@@ -33,9 +33,10 @@ class RunRecorder {
   /// The space must outlive the recorder. Throws InputError when the times of the plan are not increasing.
   RunRecorder(const SurfaceSpace& space, SnapshotPlan plan);
 
-  /// Records step n at time t: the flow's own nodal fields (v, nu, H, ..), completed by kappa, nu and H of
-  /// the discrete surface where it has none. Series: those of record_geometry; max_H and willmore_energy from
-  /// H; min_nu and max_nu where the flow has nu of its own.
+  /// Records step n at time t with the flow's own nodal fields (v, nu, H, ..). Series: those of
+  /// record_geometry; max_H and willmore_energy from H of a flow that evolves nu and H, else from that of the
+  /// discrete surface (the H of BGN's scheme is a mean over the step); min_nu and max_nu of a flow's own nu.
+  /// Snapshots have kappa of the discrete surface, too, and its nu and H where the flow has none.
   void record(int n, double t, const Field& x, std::vector<PointField> fields);
 
   /// Writes the newest surface as the last snapshot, unless it is written.
