@@ -17,6 +17,7 @@
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/library_environment.hpp"
 #include "experiments/harness/provenance.hpp"
+#include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
@@ -60,10 +61,6 @@ void write(const EvolveConfig& config, RunRecorder& recorder, const std::string&
   recorder.finish();
 }
 
-void say(const std::string& line) {
-  std::fprintf(stderr, "evolve: %s\n", line.c_str());
-}
-
 template <class State>
 using ExactState = std::function<State(double)>;
 
@@ -94,7 +91,7 @@ void run_mean_curvature(const EvolveConfig& config, const SurfaceSpace& space, R
   ExactState<State> exact_state;
   if (exact) exact_state = [&](double t) { return exact_mean_curvature_state(*exact, x0, t); };
   if (!config.surface)
-    say("no exact surface is given: nu and H at the start are computed on the discrete surface");
+    warn("no exact surface is given: nu and H at the start are computed on the discrete surface");
   run_flow(MeanCurvatureFlow(space, config.mean_curvature), config,
            config.surface ? mean_curvature_state_on(*config.surface, x0)
                           : discrete_mean_curvature_state(space, x0),
@@ -107,7 +104,7 @@ void run_dziuk(const EvolveConfig& config, const SurfaceSpace& space, RunRecorde
   const std::optional<ExactEvolution> exact = exact_solution(config);
   ExactState<State> exact_state;
   if (exact) exact_state = [&](double t) { return exact_dziuk_state(*exact, x0, t); };
-  if (config.grid.order > 3) say(format("Dziuk's scheme is unstable with BDF%d", config.grid.order));
+  warn(dziuk_warning(config.grid.order));
   run_flow(DziukFlow(space), config, dziuk_state_on(space, x0), exact_state, recorder);
 }
 
@@ -118,7 +115,7 @@ void run_bgn(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder&
 int evolve(const std::string& file, const json& origin) {
   const json config_json = read_json(file);
   const EvolveConfig config = evolve_config(config_json, file);
-  if (!config.mesh_remark.empty()) say(config.mesh_remark);
+  warn(config.mesh_remark);
   const SurfaceSpace space(config.mesh, config.rule);
   RunRecorder recorder(space, config.snapshots);
   try {
@@ -128,7 +125,7 @@ int evolve(const std::string& file, const json& origin) {
   } catch (const NumericsError& error) {
     if (!recorder.empty()) {
       write(config, recorder, error.what(), config_json, origin);
-      say(format("what was computed up to t = %g is written", recorder.newest().t));
+      warn(format("what was computed up to t = %g is written", recorder.newest().t));
     }
     throw;
   }

@@ -26,13 +26,13 @@
 #include <optional>
 
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/bgn_flow.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
-#include "solver/mesh/read.hpp"
 
 namespace {
 
@@ -151,7 +151,7 @@ Mesh corner_mesh_of_level(int level) {
 
 Mesh initial_mesh(const Setting& setting, const Run& run) {
   Mesh mesh =
-      setting.meshes.empty() ? corner_mesh_of_level(run.level) : read_mesh(setting.meshes[run.level]).mesh;
+      setting.meshes.empty() ? corner_mesh_of_level(run.level) : mesh_from_file(setting.meshes[run.level]);
   mesh = run.method == "bgn_p1" ? subdivide(mesh) : lagrange_mesh(mesh, setting.degree);
   project_nodes(mesh, dumbbell());
   return mesh;
@@ -233,6 +233,7 @@ Row run_cell(const Setting& setting, const Run& run, const std::string& folder) 
   if (bgn) {
     row.status = run_flow(BgnFlow(space), bgn_state_on(space, mesh.nodes), grid, recorder);
   } else if (run.method == "dziuk") {
+    warn(dziuk_warning(grid.order));
     row.status = run_flow(DziukFlow(space), dziuk_state_on(space, mesh.nodes), grid, recorder);
   } else {
     row.status = run_flow(MeanCurvatureFlow(space, variant_of(run.method)),

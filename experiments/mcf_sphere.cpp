@@ -20,10 +20,9 @@
 // along trajectories. x and H reach order 3 in tau slowly: slopes of x between neighbouring step sizes
 // are 2.3, 2.6, 2.75 from tau = 0.1 down.
 #include <cmath>
-#include <cstdio>
-#include <utility>
 
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/warn.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/discrete_curvature.hpp"
@@ -31,7 +30,6 @@
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
-#include "solver/mesh/read.hpp"
 
 namespace {
 
@@ -97,13 +95,6 @@ Setting resolve(const Options& options, const OwnOptions& own) {
   return setting;
 }
 
-/// The mesh of a file; what its reader changed is said on standard error.
-Mesh mesh_from_file(const std::string& file) {
-  ReadMesh found = read_mesh(file);
-  if (!found.remark.empty()) std::fprintf(stderr, "mcf_sphere: %s\n", found.remark.c_str());
-  return std::move(found.mesh);
-}
-
 /// The initial triangulation of the sphere with curved elements.
 Mesh initial_mesh(const Setting& setting, int level) {
   const Surface surface = sphere(initial_radius);
@@ -147,6 +138,7 @@ Row run(const Setting& setting, const std::string& flow, int level, int k) {
   // 3. The time steps, with the errors of each.
   const TimeGrid grid{setting.bdf, step_size(k), step_count(k), setting.start};
   if (flow == "dziuk") {
+    warn(dziuk_warning(grid.order));
     const auto state = [&](double t) { return exact_dziuk_state(exact, mesh.nodes, t); };
     run_flow(DziukFlow(space), space, grid, state, errors);
   } else {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/dziuk_flow.hpp"
 
+#include "solver/error.hpp"
 #include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/regularity.hpp"
 
@@ -25,6 +26,10 @@ void DziukFlow::step(const History<State>& history, int q, double tau, State& ne
 
   next.v = (delta_0 * next.x + sum_) / tau;
   require_regular(space_, next.x, next.v);
+}
+
+std::string dziuk_warning(int q) {
+  return q > 3 ? format("Dziuk's scheme is unstable with BDF%d: expected BDF1 to BDF3", q) : "";
 }
 
 DziukFlow::State dziuk_state_on(const SurfaceSpace& space, const Field& x) {

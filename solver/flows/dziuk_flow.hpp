@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
+
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
@@ -44,6 +46,9 @@ class DziukFlow {
   SparseCholesky cholesky_;
   Field x_tilde_, sum_;
 };
+
+/// What to tell who runs the scheme with BDF of order q: that 4 and 5 are unstable; "" for the others.
+std::string dziuk_warning(int q);
 
 /// The state on nodes x at time 0, with v = -M(x)^-1 A(x) x.
 DziukFlow::State dziuk_state_on(const SurfaceSpace& space, const Field& x);

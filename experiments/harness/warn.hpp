@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "solver/mesh/mesh.hpp"
+
+namespace esfem {
+
+/// Says "program: text" on standard error; nothing for an empty text.
+void warn(const std::string& text);
+
+/// read_mesh; what the reader changed is said on standard error.
+Mesh mesh_from_file(const std::string& file);
+
+}  // namespace esfem
