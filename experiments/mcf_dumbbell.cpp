@@ -5,7 +5,7 @@
 //
 // Sample runs:  build/bin/mcf_dumbbell --preset check --output dumbbell.json
 //               build/bin/mcf_dumbbell --methods dziuk,bgn --levels 0 --steps 1 --start cascade
-//               build/bin/mcf_dumbbell --methods kll_alpha100 --mesh reference/independent/dumbbell_450.msh --steps 0-1
+//               build/bin/mcf_dumbbell --methods kll --mesh reference/independent/dumbbell_450.msh
 //
 // Writes:       results/paper/mcf_dumbbell.{json,csv,tex}, from which plots/mcf_dumbbell.py draws
 // figures/kll19/fig13_3 ..
