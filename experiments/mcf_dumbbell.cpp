@@ -157,7 +157,7 @@ Mesh initial_mesh(const Setting& setting, const Run& run) {
   return mesh;
 }
 
-/// Runs a flow until its end or until it is singular; returns the status of the row.
+/// Runs a flow until its end, or until it is singular or fails; returns the status of the row.
 template <class Flow>
 std::string run_flow(Flow flow, const typename Flow::State& initial, const TimeGrid& grid,
                      RunRecorder& recorder) {
@@ -169,6 +169,9 @@ std::string run_flow(Flow flow, const typename Flow::State& initial, const TimeG
     });
   } catch (const SingularityError& singularity) {
     status = singularity.what();
+  } catch (const NumericsError& error) {
+    if (recorder.empty()) throw;
+    status = std::string("failed: ") + error.what();
   }
   recorder.finish();
   return status;
@@ -261,7 +264,7 @@ std::string cell_name(const Run& run) {
 }
 
 /// Seconds on one core until the pinch: a step with what is recorded of it takes about 5 microseconds a node,
-/// one of BGN's P2 scheme 150.
+/// one of BGN's scheme 60.
 double estimated_cost(const Run& run) {
   const double nodes = run.level == 1 ? 10522 : 3000;
   const double steps = 0.083 / step_size(run.k);

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The program mcf_dumbbell on a coarse mesh, as a user meets it: runs that end at the singularity.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "solver/analysis/table.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr, testing::StartsWith;
+
+TEST(McfDumbbell, KeepsWhatItHasComputedUntilTheSingularity) {
+  const fs::path folder = fs::path(ESFEM_BINARY_DIR) / "test_mcf_dumbbell" / std::to_string(getpid());
+  fs::create_directories(folder);
+  const std::string command =
+      std::string(ESFEM_BINARY_DIR) +
+      "/bin/mcf_dumbbell --methods dziuk,kll,kll_normalised,bgn_p1 --start cascade --mesh " +
+      ESFEM_SOURCE_DIR + "/reference/independent/dumbbell_450.msh --output " +
+      (folder / "table.json").string() + " 2>/dev/null";
+  ASSERT_EQ(WEXITSTATUS(std::system(command.c_str())), exit_done);
+
+  const Table table = table_from_json(read_json((folder / "table.json").string()), "table.json");
+  ASSERT_EQ(table.rows.size(), 4u);
+  for (const Row& row : table.rows) {
+    SCOPED_TRACE(row.cell);
+    EXPECT_THAT(row.status, StartsWith("singular at t = 0.0"));
+    const std::vector<double>& t = row.series.at("t");
+    EXPECT_GT(t.back(), 0.05);
+    EXPECT_LT(t.back(), 0.12) << "it does not go on after the pinch";
+    for (const auto& [name, values] : row.series) {
+      EXPECT_EQ(values.size(), t.size()) << name;
+      for (double value : values) ASSERT_TRUE(std::isfinite(value)) << name;
+    }
+    for (const char* name : {"area", "volume", "max_H", "neck_radius", "worst_angle", "worst_radius_ratio"})
+      EXPECT_EQ(row.series.count(name), 1u) << name;
+    EXPECT_EQ(row.series.count("min_nu"), row.cell.compare(0, 3, "kll") == 0) << "normals of its own";
+
+    const auto& snapshots = row.more.at("snapshots");
+    EXPECT_GE(snapshots.size(), 3u);
+    EXPECT_EQ(snapshots.back().at("t").get<double>(), t.back()) << "the last good surface";
+    for (const auto& snapshot : snapshots)
+      EXPECT_TRUE(
+          fs::exists(folder / "cells/mcf_dumbbell" / row.cell / snapshot.at("file").get<std::string>()));
+    EXPECT_TRUE(fs::exists(folder / "cells/mcf_dumbbell" / row.cell / "surfaces.pvd"));
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace esfem
