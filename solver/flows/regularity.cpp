@@ -30,6 +30,11 @@ void require_resolved(const Connectivity& elements, const Field& x, const Field&
 void require_regular(const SurfaceSpace& space, const Field& x, const Field& H) {
   if (!x.allFinite() || !H.allFinite()) return;  // an error that check_finite of the time loop names
   require_resolved(space.elements(), x, H);
+  require_regular(space, x);
+}
+
+void require_regular(const SurfaceSpace& space, const Field& x) {
+  if (!x.allFinite()) return;
   const MeshQuality quality = mesh_quality(space.elements(), x);
   if (quality.min_radius_ratio < smallest_radius_ratio) {
     throw SingularityError(format("element %d has radius ratio %g; expected at least %g",

@@ -16,6 +16,9 @@ constexpr double largest_normal_length = 4;     ///< of |nu_h| and 1/|nu_h| in t
 /// |H|).
 void require_regular(const SurfaceSpace& space, const Field& x, const Field& H);
 
+/// The same for a flow that has no curvature: elements alone are looked at.
+void require_regular(const SurfaceSpace& space, const Field& x);
+
 /// Throws SingularityError with the node's number when |nu_h| or 1/|nu_h| is beyond its bound: the surface
 /// then moves at a speed that has nothing to do with its curvature. nu: N x 3, a flow's own normal.
 void require_normal(const Field& nu);

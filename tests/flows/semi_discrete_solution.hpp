@@ -38,8 +38,8 @@ class SemiDiscreteSolution {
               [this](int n, const State& state) { states_[n] = state; });
   }
 
-  /// Largest nodal L2 error of v over the steps n >= q of a run with the given number of steps.
-  double velocity_error(int q, int steps, const Start& start) {
+  /// Largest nodal L2 error of a field over the steps n >= q of a run with the given number of steps.
+  double error(int q, int steps, const Start& start, Field State::*field) {
     SymmetricMatrix M = space_.matrix(), A = space_.matrix();
     const auto starting_values = [&](double t) { return states_.at(std::lround(t / end_time * fine_steps)); };
     double largest = 0;
@@ -48,14 +48,14 @@ class SemiDiscreteSolution {
                 if (n < q) return;
                 const State& fine = states_.at(n * fine_steps / steps);
                 space_.assemble(fine.x, M, A);
-                largest = std::max(largest, std::sqrt(M.energy(state.v - fine.v)));
+                largest = std::max(largest, std::sqrt(M.energy(state.*field - fine.*field)));
               });
     return largest;
   }
 
   /// From `steps` and twice as many.
-  double order(int q, int steps, const Start& start = {}) {
-    return std::log2(velocity_error(q, steps, start) / velocity_error(q, 2 * steps, start));
+  double order(int q, int steps, const Start& start = {}, Field State::*field = &State::v) {
+    return std::log2(error(q, steps, start, field) / error(q, 2 * steps, start, field));
   }
 
  private:

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/coupled_diffusion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/error.hpp"
+#include "solver/flows/regularity.hpp"
+
+namespace esfem {
+
+namespace {
+
+void check(const CoupledDiffusionParameters& parameters, int species) {
+  if (!(parameters.alpha > 0) || !std::isfinite(parameters.alpha))
+    throw InputError(format("alpha = %g: expected a positive number", parameters.alpha));
+  if (!(parameters.beta >= 0) || !std::isfinite(parameters.beta))
+    throw InputError(format("beta = %g: expected 0 or a positive number", parameters.beta));
+  const int count = static_cast<int>(parameters.diffusion.size());
+  if (count != species)
+    throw InputError(format("%d diffusion coefficients for %d species: expected one each", count, species));
+  for (int l = 0; l < species; ++l) {
+    const double D = parameters.diffusion[l];
+    if (!(D > 0) || !std::isfinite(D))
+      throw InputError(
+          format("diffusion coefficient %g of species %d: expected a positive number", D, l + 1));
+  }
+}
+
+}  // namespace
+
+CoupledDiffusionScheme::CoupledDiffusionScheme(const SurfaceSpace& space, int species,
+                                               CoupledDiffusionParameters parameters,
+                                               CoupledDiffusionVariant variant)
+    : space_(space),
+      parameters_((check(parameters, species), std::move(parameters))),
+      variant_(variant),
+      M_(space.matrix()),
+      A_(space.matrix()),
+      cholesky_(space.pattern()) {
+  for (int l = 0; l < species; ++l) {
+    const double D = parameters_.diffusion[l];
+    auto group = std::find_if(groups_.begin(), groups_.end(),
+                              [D](const EqualDiffusion& candidate) { return candidate.D == D; });
+    if (group == groups_.end()) group = groups_.insert(group, {D, {}, {}});
+    group->species.push_back(l);
+  }
+  for (EqualDiffusion& group : groups_) group.u.resize(space.dofs(), group.species.size());
+}
+
+void CoupledDiffusionScheme::extrapolate(const History<State>& history, int q) {
+  history.extrapolate(q, &State::x, x_tilde_);
+  history.extrapolate(q, &State::u, u_tilde_);
+  assemble_regular(space_, x_tilde_, M_, A_);
+}
+
+void CoupledDiffusionScheme::advance(const History<State>& history, int q, double tau, const Field& loads,
+                                     State& next) {
+  diffuse(history, q, tau, loads, next.u);
+  if (variant_.law == CoupledDiffusionVariant::regularised)
+    move_regularised(history, q, tau, loads, next);
+  else
+    move_dynamic(history, q, tau, loads, next);
+  require_regular(space_, next.x);
+
+  if (variant_.mass == CoupledDiffusionVariant::reassembled) space_.assemble(next.x, M_, A_);
+  M_.multiply(next.u, next.Mu);
+  M_.multiply(next.v, next.Mv);
+}
+
+// (2.19): (delta_0/tau M(x̃) + D_l A(x̃)) u_l = f_l(x̃, ũ) - 1/tau sum_{j>=1} delta_j (M u_l)^{n-j}
+void CoupledDiffusionScheme::diffuse(const History<State>& history, int q, double tau, const Field& loads,
+                                     Field& u) {
+  history.bdf_sum(q, &State::Mu, Mu_sum_);
+  u = loads.leftCols(u.cols()) - Mu_sum_ / tau;
+  for (EqualDiffusion& group : groups_) {
+    for (std::size_t c = 0; c < group.species.size(); ++c) group.u.col(c) = u.col(group.species[c]);
+    cholesky_.factorise(history.delta(q)[0] / tau, M_, group.D, A_);
+    cholesky_.solve(group.u);
+    for (std::size_t c = 0; c < group.species.size(); ++c) u.col(group.species[c]) = group.u.col(c);
+  }
+}
+
+// (2.20) with x from (2.21):
+//   (M(x̃) + (alpha + beta tau/delta_0) A(x̃)) v = g(x̃, ũ) + beta/delta_0 A(x̃) sum_{j>=1} delta_j x^{n-j}
+void CoupledDiffusionScheme::move_regularised(const History<State>& history, int q, double tau,
+                                              const Field& loads, State& next) {
+  const double delta_0 = history.delta(q)[0], beta = parameters_.beta / delta_0;
+  history.bdf_sum(q, &State::x, x_sum_);
+  A_.multiply(x_sum_, A_x_sum_);
+  next.v = loads.rightCols(3) + beta * A_x_sum_;
+  cholesky_.factorise(1.0, M_, parameters_.alpha + beta * tau, A_);
+  cholesky_.solve(next.v);
+  next.x = (tau * next.v - x_sum_) / delta_0;
+}
+
+// (delta_0/tau M(x̃) + alpha A(x̃)) v = g(x̃, ũ) - 1/tau sum_{j>=1} delta_j (M v)^{n-j}, and (2.21)
+void CoupledDiffusionScheme::move_dynamic(const History<State>& history, int q, double tau,
+                                          const Field& loads, State& next) {
+  const double delta_0 = history.delta(q)[0];
+  history.bdf_sum(q, &State::Mv, Mv_sum_);
+  next.v = loads.rightCols(3) - Mv_sum_ / tau;
+  cholesky_.factorise(delta_0 / tau, M_, parameters_.alpha, A_);
+  cholesky_.solve(next.v);
+  history.bdf_sum(q, &State::x, x_sum_);
+  next.x = (tau * next.v - x_sum_) / delta_0;
+}
+
+CoupledDiffusionState coupled_diffusion_state(const SurfaceSpace& space, double t, Field x, Field v,
+                                              Field u) {
+  if (v.rows() != x.rows() || v.cols() != 3)
+    throw InputError(format("velocity has %td x %td values; expected %td x 3", v.rows(), v.cols(), x.rows()));
+  if (u.rows() != x.rows())
+    throw InputError(format("u has values in %td nodes; expected %td", u.rows(), x.rows()));
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(x, M, A);
+  CoupledDiffusionState state;
+  state.t = t;
+  state.Mu = M * u;
+  state.Mv = M * v;
+  state.x = std::move(x);
+  state.v = std::move(v);
+  state.u = std::move(u);
+  return state;
+}
+
+std::vector<PointField> point_fields(const CoupledDiffusionState& state) {
+  std::vector<PointField> fields = {{"v", state.v}};
+  if (state.u.cols() == 1) {
+    fields.push_back({"u", state.u});
+  } else {
+    for (int l = 0; l < state.u.cols(); ++l) fields.push_back({"u" + std::to_string(l + 1), state.u.col(l)});
+  }
+  return fields;
+}
+
+Field table_columns(const CoupledDiffusionState& state) {
+  Field columns(state.x.rows(), 6 + state.u.cols());
+  columns << state.x, state.v, state.u;
+  return columns;
+}
+
+}  // namespace esfem

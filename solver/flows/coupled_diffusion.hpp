@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "solver/assembly/surface_space.hpp"
+#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/mesh/write_vtu.hpp"
+#include "solver/time/history.hpp"
+
+namespace esfem {
+
+/// How a surface that is moved by what diffuses on it is discretised (see CoupledDiffusion).
+struct CoupledDiffusionVariant {
+  enum Mass {
+    extrapolated,  ///< (2.19): M(x̃^{n-j}) u^{n-j}, kept from the steps before
+    reassembled    ///< (7.2): M(x^{n-j}) u^{n-j}; loses an order in time
+  } mass = extrapolated;
+  enum Law { regularised, dynamic } law = regularised;
+};
+
+struct CoupledDiffusionState {
+  double t = 0;
+  Field x;   ///< N x 3
+  Field v;   ///< N x 3
+  Field u;   ///< N x m
+  Field Mu;  ///< N x m: M u with the mass matrix of the variant, so that no old matrix is needed
+  Field Mv;  ///< N x 3: the same for v (history of the dynamic law)
+  static constexpr NamedField<CoupledDiffusionState> fields[] = {{"x", &CoupledDiffusionState::x},
+                                                                 {"v", &CoupledDiffusionState::v},
+                                                                 {"u", &CoupledDiffusionState::u},
+                                                                 {"Mu", &CoupledDiffusionState::Mu},
+                                                                 {"Mv", &CoupledDiffusionState::Mv}};
+};
+
+struct CoupledDiffusionParameters {
+  double alpha = 1;                     ///< > 0
+  double beta = 1;                      ///< >= 0; the dynamic law has no such term
+  std::vector<double> diffusion = {1};  ///< D_l > 0, one per species
+};
+
+/// A step of nick18 (2.18)-(2.21) with its loads given: what does not depend on f and g.
+class CoupledDiffusionScheme {
+ public:
+  using State = CoupledDiffusionState;
+
+  /// Throws InputError for parameters out of range and when there is not one D per species.
+  CoupledDiffusionScheme(const SurfaceSpace& space, int species, CoupledDiffusionParameters parameters,
+                         CoupledDiffusionVariant variant);
+
+  /// (2.18) for x and u, and M(x̃), A(x̃). Throws SingularityError where Gamma_h[x̃] is degenerate.
+  void extrapolate(const History<State>& history, int q);
+  const Field& x_tilde() const { return x_tilde_; }
+  const Field& u_tilde() const { return u_tilde_; }
+
+  /// After extrapolate: solves (2.19)-(2.21) for all fields of next. loads: N x (m + 3), f(x̃, ũ) and g(x̃,
+  /// ũ). Throws SingularityError where elements of Gamma_h[x] have degenerated (regularity.hpp).
+  void advance(const History<State>& history, int q, double tau, const Field& loads, State& next);
+
+ private:
+  /// Species of one diffusion coefficient, which share a factorisation and a solve.
+  struct EqualDiffusion {
+    double D;
+    std::vector<int> species;
+    Field u;
+  };
+
+  void diffuse(const History<State>& history, int q, double tau, const Field& loads, Field& u);
+  void move_regularised(const History<State>& history, int q, double tau, const Field& loads, State& next);
+  void move_dynamic(const History<State>& history, int q, double tau, const Field& loads, State& next);
+
+  const SurfaceSpace& space_;
+  CoupledDiffusionParameters parameters_;
+  CoupledDiffusionVariant variant_;
+  std::vector<EqualDiffusion> groups_;
+  SymmetricMatrix M_, A_;
+  SparseCholesky cholesky_;
+  Field x_tilde_, u_tilde_, x_sum_, A_x_sum_, Mu_sum_, Mv_sum_;
+};
+
+/// A surface that is moved by what diffuses on it (nick18 (2.7)-(2.9), here for species u_1..u_m):
+///   d•u_l + u_l div v - D_l Lap u_l = f_l(u, grad u),   l = 1..m,
+/// and one of two velocity laws,
+///   regularised (2.8):              v - alpha Lap v + beta H nu = g(u, grad u) nu,
+///   dynamic (Kovács, Lubich 2018):  d•v + v div v - alpha Lap v = g(u, grad u) nu,
+/// discretised by linearly implicit BDF as in (2.19)-(2.21).
+///
+/// A Problem says what f and g are; both are evaluated in the quadrature points of Gamma_h[x̃] with u = ũ, at
+/// the time t of the new step:
+///   struct Problem {
+///     static constexpr int species = 1;
+///     void f(double t, const PointData<species>& p, Pack (&out)[species]) const;
+///     Pack g(double t, const PointData<species>& p) const;
+///   };
+template <class Problem>
+class CoupledDiffusion {
+ public:
+  using State = CoupledDiffusionState;
+
+  /// The space gives elements, degree and quadrature; it must outlive the flow. Throws InputError for
+  /// parameters out of range and when there is not one D per species.
+  CoupledDiffusion(const SurfaceSpace& space, Problem problem, CoupledDiffusionParameters parameters,
+                   CoupledDiffusionVariant variant)
+      : space_(space),
+        problem_(std::move(problem)),
+        scheme_(space, species, std::move(parameters), variant) {}
+
+  /// One step with BDF of order q: fills all fields of next. Throws SingularityError where the surface has
+  /// degenerated.
+  void step(const History<State>& history, int q, double tau, State& next) {
+    scheme_.extrapolate(history, q);
+    const auto f_and_g = [&](const PointData<species>& p, Integrand<species + 3, 0>& load) {
+      Pack f[species];
+      problem_.f(next.t, p, f);
+      const Pack g = problem_.g(next.t, p);
+      for (int l = 0; l < species; ++l) load.value[l] = f[l];
+      for (int i = 0; i < 3; ++i) load.value[species + i] = g * p.normal[i];
+    };
+    space_.assemble_load<species, species + 3, 0>(scheme_.x_tilde(), scheme_.u_tilde(), f_and_g, loads_);
+    scheme_.advance(history, q, tau, loads_, next);
+  }
+
+ private:
+  static constexpr int species = Problem::species;
+
+  const SurfaceSpace& space_;
+  Problem problem_;
+  CoupledDiffusionScheme scheme_;
+  Field loads_;
+};
+
+/// The state with given nodal values, and Mu = M(x) u, Mv = M(x) v: x̃ = x at the starting values. Throws
+/// InputError when v is not N x 3 or u has not N rows.
+CoupledDiffusionState coupled_diffusion_state(const SurfaceSpace& space, double t, Field x, Field v, Field u);
+
+/// The flow's own nodal fields beside x: v, and u or, for several species, u1, u2, ...
+std::vector<PointField> point_fields(const CoupledDiffusionState& state);
+
+/// x, v, u side by side (N x (6 + m)), the columns of the error tables.
+Field table_columns(const CoupledDiffusionState& state);
+
+}  // namespace esfem

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/growing_sphere.hpp"
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+GrowingSphere::GrowingSphere(double t) {
+  const double pi = std::acos(-1.0);
+  r = 1 + std::sin(pi * t) / 2;
+  dr = pi * std::cos(pi * t) / 2;
+  ddr = -pi * pi * std::sin(pi * t) / 2;
+  a = std::exp(-t * t);
+  da = -2 * t * a;
+}
+
+GrowingSphereProblem::GrowingSphereProblem(const CoupledDiffusionParameters& parameters,
+                                           CoupledDiffusionVariant::Law law, Coupling coupling)
+    : alpha_(parameters.alpha), beta_(parameters.beta), law_(law), coupling_(coupling) {
+  if (parameters.diffusion.size() != 1) {
+    throw InputError(format("%zu diffusion coefficients; the growing sphere has one species",
+                            parameters.diffusion.size()));
+  }
+  D_ = parameters.diffusion[0];
+}
+
+double GrowingSphereProblem::normal_load(const GrowingSphere& s) const {
+  const double smoothing = 2 * alpha_ * s.dr / (s.r * s.r);
+  if (law_ == CoupledDiffusionVariant::dynamic) return s.ddr + 2 * s.dr * s.dr / s.r + smoothing;
+  return s.dr + smoothing + 2 * beta_ / s.r;
+}
+
+ExactEvolution growing_sphere() {
+  ExactEvolution exact;
+  exact.quantities = {{"x", 3}, {"v", 3}, {"u", 1}};
+  exact.surface = [](double t) { return sphere(GrowingSphere(t).r); };
+  exact.trajectories = [](const Field& x0, double t) -> Field { return GrowingSphere(t).r * x0; };
+  exact.fields = [](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
+                    Eigen::MatrixXd& gradient) {
+    const GrowingSphere s(t);
+    const Mat3 projection = Mat3::Identity() - shape.normal * shape.normal.transpose();
+    const Vec3 gradient_u = s.a * Vec3(y[1] * y[2], y[2] * y[0], y[0] * y[1]);
+    value << y, s.dr / s.r * y, s.a * y[0] * y[1] * y[2];
+    gradient << projection, s.dr / s.r * projection, projection * gradient_u;
+  };
+  return exact;
+}
+
+CoupledDiffusionState exact_growing_sphere_state(const SurfaceSpace& space, const ExactEvolution& exact,
+                                                 const Field& x0, double t) {
+  Field x = exact.trajectories(x0, t);
+  const Field values = exact.nodal_values(x, t);
+  return coupled_diffusion_state(space, t, std::move(x), values.middleCols(exact.column("v"), 3),
+                                 values.col(exact.column("u")));
+}
+
+}  // namespace esfem
