@@ -22,6 +22,7 @@
 #include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/bgn_flow.hpp"
+#include "solver/flows/coupled_diffusion.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 
 namespace {
@@ -112,6 +113,18 @@ void run_bgn(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder&
   run_flow(BgnFlow(space), config, bgn_state_on(space, config.mesh.nodes), {}, recorder);
 }
 
+void run_coupled_diffusion(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
+  using State = CoupledDiffusionState;
+  const auto& [parameters, variant, coupling] = config.coupled;
+  const ExactEvolution exact = growing_sphere();
+  const ExactState<State> exact_state = [&](double t) {
+    return exact_growing_sphere_state(space, exact, config.mesh.nodes, t);
+  };
+  run_flow(
+      CoupledDiffusion(space, GrowingSphereProblem(parameters, variant.law, coupling), parameters, variant),
+      config, exact_state(0), exact_state, recorder);
+}
+
 int evolve(const std::string& file, const json& origin) {
   const json config_json = read_json(file);
   const EvolveConfig config = evolve_config(config_json, file);
@@ -122,6 +135,7 @@ int evolve(const std::string& file, const json& origin) {
     if (config.flow == "mean_curvature") run_mean_curvature(config, space, recorder);
     if (config.flow == "dziuk") run_dziuk(config, space, recorder);
     if (config.flow == "bgn") run_bgn(config, space, recorder);
+    if (config.flow == "coupled_diffusion") run_coupled_diffusion(config, space, recorder);
   } catch (const NumericsError& error) {
     if (!recorder.empty()) {
       write(config, recorder, error.what(), config_json, origin);

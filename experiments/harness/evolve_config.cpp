@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/harness/evolve_config.hpp"
 
+#include <map>
+
 #include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
@@ -14,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::set<std::string> known_flows = {"mean_curvature", "dziuk", "bgn"};
+const std::set<std::string> known_flows = {"mean_curvature", "dziuk", "bgn", "coupled_diffusion"};
 
 std::string listed(const std::set<std::string>& names) {
   std::string list;
@@ -117,6 +119,53 @@ MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const
   return variant;
 }
 
+/// The value of a key that is one of some words, by their names.
+template <class Value>
+Value choice(const JsonReader& reader, const std::string& key, const std::map<std::string, Value>& words,
+             Value otherwise) {
+  if (!reader.has(key)) return otherwise;
+  const auto found = words.find(reader.text(key));
+  if (found != words.end()) return found->second;
+  std::set<std::string> names;
+  for (const auto& [name, value] : words) names.insert(name);
+  throw InputError(reader.where() + ": found " + key + " = \"" + reader.text(key) + "\"; expected one of " +
+                   listed(names));
+}
+
+EvolveConfig::Coupled coupled_problem(const JsonReader& reader, const EvolveConfig& config) {
+  using Variant = CoupledDiffusionVariant;
+  using Problem = GrowingSphereProblem;
+  EvolveConfig::Coupled coupled;
+  const std::string problem = reader.has("problem") ? reader.text("problem") : "growing_sphere";
+  if (problem != "growing_sphere")
+    throw InputError(reader.where() + ": found problem = \"" + problem + "\"; expected growing_sphere");
+  if (!config.surface || config.surface->name != "sphere" || config.surface->parameters.at("radius") != 1)
+    throw InputError(reader.where() +
+                     ": problem growing_sphere starts from the unit sphere; expected \"surface\": {\"name\": "
+                     "\"sphere\", \"radius\": 1}");
+  if (reader.has("parameters")) {
+    const JsonReader parameters(reader.object("parameters"), reader.where() + ": parameters");
+    parameters.accept_only({"alpha", "beta"});
+    coupled.parameters.alpha = parameters.number_or("alpha", 1);
+    coupled.parameters.beta = parameters.number_or("beta", 1);
+  }
+  if (reader.has("variant")) {
+    const JsonReader variant(reader.object("variant"), reader.where() + ": variant");
+    variant.accept_only({"mass", "law", "coupling"});
+    coupled.variant.mass = choice<Variant::Mass>(
+        variant, "mass", {{"extrapolated", Variant::extrapolated}, {"reassembled", Variant::reassembled}},
+        Variant::extrapolated);
+    coupled.variant.law = choice<Variant::Law>(
+        variant, "law", {{"regularised", Variant::regularised}, {"dynamic", Variant::dynamic}},
+        Variant::regularised);
+    coupled.coupling = choice<Problem::Coupling>(
+        variant, "coupling",
+        {{"additive", Problem::additive}, {"quotient", Problem::quotient}, {"none", Problem::none}},
+        Problem::additive);
+  }
+  return coupled;
+}
+
 /// "every" and "times" of the output; they need "vtu".
 SnapshotPlan snapshot_plan(const JsonReader& output) {
   SnapshotPlan plan;
@@ -146,19 +195,13 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
                      listed(known_flows));
   }
   reader.accept_only({"flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start", "quadrature",
-                      "variant", "output"});
+                      "variant", "output", "problem", "parameters"});
   const int degree = integer_within(reader, "degree", 2, 1, max_degree);
   config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
                 : config.flow == "bgn" && degree == 1 ? vertex_quadrature()
                                                       : default_quadrature(degree);
   config.grid = time_grid(reader, config.flow);
   config.start_given = reader.has("start");
-  if (reader.has("variant")) {
-    if (config.flow != "mean_curvature") {
-      throw InputError(source + ": flow " + config.flow + " has no variants; expected no key variant");
-    }
-    config.mean_curvature = mean_curvature_variant(reader.object("variant"), source + ": variant");
-  }
   if (reader.has("output")) {
     const JsonReader output(reader.object("output"), source + ": output");
     output.accept_only({"nodal", "series", "vtu", "every", "times"});
@@ -167,6 +210,18 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
     config.snapshots = snapshot_plan(output);
   }
   if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
+  if (config.flow == "coupled_diffusion") {
+    config.coupled = coupled_problem(reader, config);
+  } else {
+    for (const char* key : {"problem", "parameters"}) {
+      if (reader.has(key))
+        throw InputError(source + ": flow " + config.flow + " has none; expected no key " + key);
+    }
+    if (reader.has("variant") && config.flow != "mean_curvature")
+      throw InputError(source + ": flow " + config.flow + " has no variants; expected no key variant");
+    if (reader.has("variant"))
+      config.mean_curvature = mean_curvature_variant(reader.object("variant"), source + ": variant");
+  }
   make_mesh(reader.object("mesh"), source + ": mesh", degree, config);
   return config;
 }
@@ -175,7 +230,10 @@ std::string evolve_config_help() {
   return R"(CONFIG.json (keys without a default must be given; unknown keys are errors):
   {"flow": "mean_curvature"                   kll19 (5.1): evolution equations for nu and H
          | "dziuk"                            Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5
-         | "bgn",                             Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good
+         | "bgn"                              Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good
+         | "coupled_diffusion",               nick18 (2.19)-(2.21): moved by what diffuses on the surface
+   "problem": "growing_sphere",               coupled_diffusion: nick18 7.3, from the unit sphere
+   "parameters": {"alpha": 1, "beta": 1},     coupled_diffusion
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
    "mesh": {"file": "a.msh"}                 .msh, .off, .obj, .ply, .stl; nodes are projected to the surface
          | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
@@ -186,14 +244,16 @@ std::string evolve_config_help() {
    "steps": 0,                                end time = steps tau; 0 writes the initial surface
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
-   "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0},  mean_curvature alone
+   "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0},  mean_curvature
+            {"mass": "extrapolated" | "reassembled", "law": "regularised" | "dynamic",
+             "coupling": "additive" | "quotient" | "none"},                                    coupled_diffusion
    "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
               "every": 10,                    at every 10th step (default 0: none of these)
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
 Surfaces and their defaults:
 )" + named_surfaces_help() +
-         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H) of the last step, one row a node
+         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u) of the last step, one row a node
 in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
 (degrees), worst_radius_ratio, for mean_curvature also min_nu, max_nu. Snapshots have v, nu, H, and kappa = M^-1 A x. Where
 the flow has no nu, max_H and willmore_energy, and nu and H of snapshots, are those of the discrete surface.

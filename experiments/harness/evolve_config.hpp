@@ -7,6 +7,7 @@
 
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/fe/quadrature.hpp"
+#include "solver/flows/growing_sphere.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/mesh.hpp"
 #include "solver/time/integrate.hpp"
@@ -15,7 +16,7 @@ namespace esfem {
 
 /// What a CONFIG.json of `evolve` asks for, with the defaults filled in.
 struct EvolveConfig {
-  std::string flow;                ///< mean_curvature | dziuk | bgn
+  std::string flow;                ///< mean_curvature | dziuk | bgn | coupled_diffusion
   std::optional<Surface> surface;  ///< the exact initial surface, where one is given
   Mesh mesh;                       ///< P_k; on the surface, where there is one
   std::string mesh_remark;         ///< what the reader of the mesh changed; empty: nothing
@@ -23,6 +24,12 @@ struct EvolveConfig {
   bool start_given = false;  ///< whether grid.start comes from the file
   Quadrature rule;
   MeanCurvatureFlow::Variant mean_curvature;
+  /// The coupled problem, of which there is one: the growing sphere.
+  struct Coupled {
+    CoupledDiffusionParameters parameters;
+    CoupledDiffusionVariant variant;
+    GrowingSphereProblem::Coupling coupling = GrowingSphereProblem::additive;
+  } coupled;
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
   SnapshotPlan snapshots;
 };

@@ -119,6 +119,17 @@ TEST_F(Evolve, RunsAllFlowsOfMeanCurvature) {
   EXPECT_THAT(message, HasSubstr("unstable with BDF4"));
 }
 
+TEST_F(Evolve, RunsTheCoupledFlow) {
+  ASSERT_EQ(run(config({{"flow", "coupled_diffusion"}})), exit_done) << message;
+  const json end = read_json(nodal);
+  const double radius = 1 + 0.5 * std::sin(std::acos(-1.0) * 0.04);
+  EXPECT_NEAR(std::sqrt(read_json(series).at("area")[4].get<double>() / (4 * std::acos(-1.0))), radius, 1e-3);
+  EXPECT_EQ(end.at("u").size(), end.at("x").size());
+  ASSERT_EQ(run(config({{"flow", "coupled_diffusion"}, {"variant", {{"mass", "reassembled"}}}})), exit_done)
+      << message;
+  EXPECT_NE(read_json(nodal).at("u"), end.at("u"));
+}
+
 TEST_F(Evolve, WritesSnapshotsAtTheTimesAskedFor) {
   const std::string pvd = (folder / "snapshots/run.pvd").string();
   const json output = {{"vtu", pvd}, {"times", {0.015}}};
@@ -137,9 +148,14 @@ TEST_F(Evolve, WritesSnapshotsAtTheTimesAskedFor) {
 
 TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
   const std::vector<std::pair<json, std::string>> bad = {
-      {{{"flow", "mean"}}, "expected one of bgn, dziuk, mean_curvature"},
+      {{{"flow", "mean"}}, "expected one of bgn, coupled_diffusion, dziuk, mean_curvature"},
       {{{"flow", "bgn"}, {"bdf", 2}}, "bdf = 2; expected 1 to 1"},
       {{{"flow", "dziuk"}, {"variant", {{"normalise", true}}}}, "no variants"},
+      {{{"problem", "growing_sphere"}}, "expected no key problem"},
+      {{{"flow", "coupled_diffusion"}, {"problem", "tumour"}}, "expected growing_sphere"},
+      {{{"flow", "coupled_diffusion"}, {"surface", {{"radius", 2}}}}, "unit sphere"},
+      {{{"flow", "coupled_diffusion"}, {"parameters", {{"alpha", 0}}}}, "alpha = 0"},
+      {{{"flow", "coupled_diffusion"}, {"variant", {{"coupling", "strong"}}}}, "additive, none, quotient"},
       {{{"output", {{"every", 5}}}}, "expected the key vtu"},
       {{{"output", {{"vtu", "snapshots"}}}}, ".pvd"},
       {{{"output", {{"vtu", "a.pvd"}, {"times", {0.02, 0.01}}}}}, "increasing"},

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Surface evolution coupled to diffusion on the surface: convergence in time and space (nick18 §7, Figures 1
+// to 5)
+//
+// Sample runs:  build/bin/coupled_diffusion --preset check --output coupled.json
+//               build/bin/coupled_diffusion --runs convergence --bdf 2 --levels 0 --steps 1-4
+//               build/bin/coupled_diffusion --runs difference --levels 0 --steps 1-3
+//
+// Writes:       results/paper/coupled_diffusion.{json,csv,tex}, from which plots/coupled_diffusion.py draws
+//               figures/nick18/fig1 .. fig5
+//
+// A sphere of radius r(t) = 1 + sin(pi t)/2 carries u = exp(-t²) x1 x2 x3; f and g are chosen so that these
+// solve
+//   d•u + u div v - Lap u = f(u),   v - Lap v + H nu = g(u) nu   (2.7)-(2.8)
+// on [0, 1]. The discretisation is (2.19)-(2.21): quadratic elements and BDF3, exact starting values, tau =
+// 0.1 2^-k and h near 0.38 2^(-j/2). Errors are those at t = 1.
+//
+// Beside the published runs: g coupled as printed (0/0 on three planes) and not coupled at all; the
+// difference between (2.19) and (7.2) for BDF 2, 3 and 4; the dynamic velocity law; the orders of BDF 1 to 5
+// against a solution of the same discretisation with small steps.
+//
+// Expected orders (Theorem 2.1): tau³ + h² in H1, one more in h in L2.
+#include "solver/flows/coupled_diffusion.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "experiments/harness/experiment.hpp"
+#include "experiments/harness/warn.hpp"
+#include "solver/analysis/errors.hpp"
+#include "solver/error.hpp"
+#include "solver/flows/growing_sphere.hpp"
+#include "solver/mesh/generate.hpp"
+
+namespace {
+
+using namespace esfem;
+using State = CoupledDiffusionState;
+
+const double end_time = 1, largest_tau = 0.1, largest_h = 0.38;
+const int reference_k = 7;  ///< step size of the solution that the orders of BDF 1 to 5 are measured against
+
+double step_size(int k) {
+  return largest_tau * std::pow(2.0, -k);
+}
+int step_count(int k) {
+  return static_cast<int>(std::lround(end_time / step_size(k)));
+}
+double edge_length(int level) {
+  return largest_h * std::pow(2.0, -0.5 * level);
+}
+
+/// What is run and how its rows are labelled.
+const std::vector<std::string> known_runs = {"convergence", "quotient", "none",
+                                             "difference",  "dynamic",  "order"};
+
+/// One run of the grid.
+struct Run {
+  std::string kind;
+  int bdf, level, k;
+};
+
+struct OwnOptions {
+  std::string quadrature;
+  std::vector<std::string> runs;
+};
+
+struct Setting {
+  std::vector<Run> runs;
+  int degree;
+  Start start;
+  std::vector<std::string> meshes;
+  Quadrature rule;
+};
+
+void add_runs(const std::string& kind, const std::vector<int>& orders, const std::vector<int>& levels,
+              const std::vector<int>& steps, std::vector<Run>& runs) {
+  for (int bdf : orders) {
+    for (int level : levels) {
+      for (int k : steps) runs.push_back({kind, bdf, level, k});
+    }
+  }
+}
+
+std::vector<Run> preset_runs(const std::string& preset) {
+  const bool paper = preset == "paper";
+  std::vector<Run> runs;
+  if (paper) {
+    add_runs("convergence", {3}, {0, 1, 2, 3, 4}, {0, 1, 2, 3, 4, 5}, runs);
+    add_runs("difference", {3}, {0, 1, 2, 3}, {0, 1, 2, 3, 4, 5}, runs);
+    add_runs("dynamic", {3}, {0, 1, 2, 3}, {1, 2, 3, 4}, runs);
+  } else {
+    add_runs("convergence", {3}, {0, 1, 2, 3}, {1, 2, 3, 4}, runs);
+    add_runs("difference", {3}, {0, 1}, {1, 2, 3, 4}, runs);
+    add_runs("dynamic", {3}, {0, 1, 2}, {1, 2, 3, 4}, runs);
+  }
+  add_runs("quotient", {3}, {0, 1}, {3}, runs);
+  add_runs("none", {3}, {0, 1}, {3}, runs);
+  add_runs("difference", {2, 4}, {0, 1}, {1, 2, 3, 4}, runs);
+  add_runs("order", {1, 2, 3, 4, 5}, {0}, {1, 2, 3, 4}, runs);
+  return runs;
+}
+
+Setting resolve(const Options& options, const OwnOptions& own) {
+  Setting setting;
+  setting.degree = options.degree.value_or(2);
+  setting.start = options.start.value_or(Start{});
+  setting.meshes = options.meshes;
+  setting.rule =
+      own.quadrature.empty() ? default_quadrature(setting.degree) : parse_quadrature(own.quadrature);
+  const bool as_in_the_preset =
+      !options.levels && !options.steps && !options.bdf && options.meshes.empty() && own.runs.empty();
+  if (as_in_the_preset) {
+    setting.runs = preset_runs(options.preset);
+    return setting;
+  }
+  std::vector<int> levels = {0};
+  for (int i = 1; i < static_cast<int>(options.meshes.size()); ++i) levels.push_back(i);
+  levels = options.levels.value_or(levels);
+  for (int level : levels) {
+    if (!options.meshes.empty() && level >= static_cast<int>(options.meshes.size())) {
+      throw InputError(format("--levels: found %d, expected less than %zu, the number of --mesh files", level,
+                              options.meshes.size()));
+    }
+  }
+  const std::vector<std::string> kinds =
+      own.runs.empty() ? std::vector<std::string>{"convergence"} : own.runs;
+  for (const std::string& kind : kinds) {
+    add_runs(kind, {options.bdf.value_or(3)}, levels, options.steps.value_or(std::vector<int>{1, 2, 3, 4}),
+             setting.runs);
+  }
+  return setting;
+}
+
+Mesh initial_mesh(const Setting& setting, int level) {
+  const Surface surface = sphere(1);
+  Mesh mesh = setting.meshes.empty() ? generate_mesh(surface, edge_length(level))
+                                     : mesh_from_file(setting.meshes[level]);
+  mesh = lagrange_mesh(mesh, setting.degree);
+  project_nodes(mesh, surface);
+  return mesh;
+}
+
+/// The growing sphere on one mesh.
+struct GrowingSphereRuns {
+  const SurfaceSpace& space;
+  const Field& x0;
+  ExactEvolution exact = growing_sphere();
+
+  State exact_state(double t) const { return exact_growing_sphere_state(space, exact, x0, t); }
+
+  /// The state at the end time.
+  State run(const TimeGrid& grid, CoupledDiffusionVariant variant,
+            GrowingSphereProblem::Coupling coupling = GrowingSphereProblem::additive) const {
+    const CoupledDiffusionParameters parameters;
+    CoupledDiffusion<GrowingSphereProblem> flow(
+        space, GrowingSphereProblem(parameters, variant.law, coupling), parameters, variant);
+    State end;
+    integrate(flow, grid, exact_state(0),
+              std::function<State(double)>([&](double t) { return exact_state(t); }),
+              [&](int n, const State& state) {
+                if (n == grid.steps) end = state;
+              });
+    return end;
+  }
+};
+
+/// Nodal norms of a difference on the exact nodes at the end.
+std::map<std::string, double> nodal_errors(const GrowingSphereRuns& runs, const Field& e) {
+  SymmetricMatrix M = runs.space.matrix(), A = runs.space.matrix();
+  runs.space.assemble(runs.exact.trajectories(runs.x0, end_time), M, A);
+  const SquaredNorms norms = nodal_norms(M, A, e);
+  const double L2 = norms.L2.sum(), H1_semi = norms.H1_semi.sum();
+  return {{"nodal_L2", std::sqrt(L2)},
+          {"nodal_H1_semi", std::sqrt(H1_semi)},
+          {"nodal_H1", std::sqrt(L2 + H1_semi)}};
+}
+
+/// (7.2) beside (2.19): the difference in u, and how much longer (7.2) takes.
+void run_difference(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
+  const auto timed = [&](CoupledDiffusionVariant::Mass mass, double& seconds) {
+    CoupledDiffusionVariant variant;
+    variant.mass = mass;
+    const auto begin = std::chrono::steady_clock::now();
+    State end = runs.run(grid, variant);
+    seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return end;
+  };
+  double extrapolated = 0, reassembled = 0;
+  const State one = timed(CoupledDiffusionVariant::extrapolated, extrapolated);
+  const State two = timed(CoupledDiffusionVariant::reassembled, reassembled);
+  row.errors["u_difference"] = nodal_errors(runs, one.u - two.u);
+  row.values["seconds_ratio"] = reassembled / extrapolated;
+}
+
+/// Errors against a solution of the same discretisation in space with BDF5 and small steps.
+void run_order(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
+  const State reference = runs.run({5, step_size(reference_k), step_count(reference_k), {}}, {});
+  const State end = runs.run(grid, {});
+  row.errors["x"] = nodal_errors(runs, end.x - reference.x);
+  row.errors["v"] = nodal_errors(runs, end.v - reference.v);
+  row.errors["u"] = nodal_errors(runs, end.u - reference.u);
+}
+
+/// Errors against the exact solution at the end.
+void run_convergence(const GrowingSphereRuns& runs, const std::string& kind, const TimeGrid& grid, Row& row) {
+  CoupledDiffusionVariant variant;
+  if (kind == "dynamic") variant.law = CoupledDiffusionVariant::dynamic;
+  const auto coupling = kind == "quotient" ? GrowingSphereProblem::quotient
+                        : kind == "none"   ? GrowingSphereProblem::none
+                                           : GrowingSphereProblem::additive;
+  const State end = runs.run(grid, variant, coupling);
+  ErrorRecorder errors(runs.space, runs.exact, runs.x0);
+  errors.record(end_time, table_columns(end));
+  row.errors = errors.maxima();
+  row.series = errors.series();
+}
+
+nlohmann::json labels(const Run& run) {
+  return {{"run", run.kind}, {"bdf", std::to_string(run.bdf)}};
+}
+
+Row run_cell(const Setting& setting, const Run& run) {
+  // 1. The initial surface and the finite element space on it.
+  const Mesh mesh = initial_mesh(setting, run.level);
+  const SurfaceSpace space(mesh, setting.rule);
+  Row row;
+  row.level = run.level;
+  row.h = mesh_quality(mesh.elements, mesh.nodes).h;
+  row.nodes = space.dofs();
+  row.tau = step_size(run.k);
+  row.steps = step_count(run.k);
+  row.more = labels(run);
+
+  // 2. The time steps, and the errors at their end.
+  const GrowingSphereRuns runs{space, mesh.nodes};
+  const TimeGrid grid{run.bdf, row.tau, row.steps, setting.start};
+  if (run.kind == "difference") {
+    run_difference(runs, grid, row);
+  } else if (run.kind == "order") {
+    run_order(runs, grid, row);
+  } else {
+    run_convergence(runs, run.kind, grid, row);
+  }
+  return row;
+}
+
+std::string cell_name(const Run& run) {
+  const std::string kind = run.kind == "convergence" ? "" : run.kind + "_";
+  return kind + format("bdf%d_h%d_tau%d", run.bdf, run.level, run.k);
+}
+
+/// Seconds on one core: a step takes about 2.5 microseconds a node.
+double estimated_cost(const Setting& setting, const Run& run) {
+  const double vertices = 27.5 / std::pow(edge_length(run.level), 2);
+  const double nodes = vertices * setting.degree * setting.degree;
+  double steps = step_count(run.k);
+  if (run.kind == "difference") steps *= 2.2;
+  if (run.kind == "order") steps += step_count(reference_k);
+  return 0.1 + vertices * 2e-4 + nodes * steps * 2.5e-6;
+}
+
+std::vector<Cell> cells(const Setting& setting) {
+  std::vector<Cell> list;
+  for (const Run& run : setting.runs) {
+    Cell cell{cell_name(run), estimated_cost(setting, run),
+              [=](const std::string&) { return run_cell(setting, run); }};
+    cell.planned.level = run.level;
+    cell.planned.tau = step_size(run.k);
+    cell.planned.steps = step_count(run.k);
+    cell.planned.more = labels(run);
+    list.push_back(cell);
+  }
+  return list;
+}
+
+nlohmann::json parameters(const Setting& setting, const std::string& preset) {
+  nlohmann::json meshes = setting.meshes;
+  if (setting.meshes.empty()) meshes = "generated, edge length 0.38 2^(-level/2)";
+  return {{"preset", preset},
+          {"end_time", end_time},
+          {"alpha", 1},
+          {"beta", 1},
+          {"degree", setting.degree},
+          {"start", to_string(setting.start)},
+          {"quadrature", setting.rule.name},
+          {"errors", "at the end time"},
+          {"meshes", meshes}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  OwnOptions own;
+  Experiment experiment;
+  experiment.stem = "coupled_diffusion";
+  experiment.paper = "nick18";
+  experiment.help =
+      "A growing sphere that is moved by what diffuses on it (nick18 Figures 1 to 5): errors of position x, "
+      "velocity v and\n"
+      "u at t = 1 over step size and mesh width. Step sizes 0.1 2^-k, k = 0, 1, ..; edge lengths 0.38 "
+      "2^(-j/2), level j =\n"
+      "0, 1, .. No units: alpha = beta = D = 1.\n"
+      "Without --runs, --bdf, --levels, --steps, --mesh: the runs of the preset. With one of them: all "
+      "combinations, where\n"
+      "not given convergence, BDF3, level 0, k = 1..4.\n\n"
+      "Example: coupled_diffusion --runs convergence --levels 0-2 --steps 1-4 --output table.json";
+  experiment.add_options = [&](CLI::App& app) {
+    const std::string group = "Method (not given: as in the preset)";
+    app.add_option("--runs", own.runs,
+                   "convergence: (2.19) with g coupled additively | quotient: as printed | none: not coupled "
+                   "| difference: "
+                   "(7.2) minus (2.19) | dynamic: dynamic velocity law | order: errors against small steps")
+        ->check(CLI::IsMember(known_runs))
+        ->delimiter(',')
+        ->type_name("LIST")
+        ->group(group);
+    app.add_option("--quadrature", own.quadrature,
+                   "rule on each element: conical:N (N x N Gauss points) | degree:D (symmetric)")
+        ->type_name("RULE")
+        ->group(group);
+  };
+  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
+  experiment.parameters = [&](const Options& options) {
+    return parameters(resolve(options, own), options.preset);
+  };
+  experiment.fit_range.tau_max = 0.05;
+  return run_experiment(experiment, argc, argv);
+}
