@@ -32,9 +32,9 @@ class GrowingSphereProblem {
   /// How g depends on u; all have the same exact solution.
   enum Coupling {
     additive,  ///< g = G(t) + (u - a x1 x2 x3)
-    quotient,  ///< g = u G(t)/(a x1 x2 x3), as §7.3 prints it: 0/0 on three planes, so errors of u are
-               ///< amplified by how near quadrature points come to them; on coarse meshes the solution is
-               ///< lost
+    /// g = u G(t)/(a x1 x2 x3), as §7.3 prints it: 0/0 on three planes. Errors of u are amplified where
+    /// quadrature points come near them; on coarse meshes the solution is lost.
+    quotient,
     none  ///< g = G(t)
   };
 
