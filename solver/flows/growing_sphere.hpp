@@ -32,8 +32,10 @@ class GrowingSphereProblem {
   /// How g depends on u; all have the same exact solution.
   enum Coupling {
     additive,  ///< g = G(t) + (u - a x1 x2 x3)
-    quotient,  ///< g = u G(t)/(a x1 x2 x3), as §7.3 prints it: 0/0 on three planes
-    none       ///< g = G(t)
+    /// g = u G(t)/(a x1 x2 x3), as §7.3 prints it: 0/0 on three planes. Errors of u are amplified where
+    /// quadrature points come near them; on coarse meshes the solution is lost.
+    quotient,
+    none  ///< g = G(t)
   };
 
   /// parameters and law are those of the flow. Throws InputError when there is not one D.
