@@ -130,11 +130,14 @@ verdicts:
 
 # The errors of an independent implementation, on its meshes and with its quadrature rule.
 independent_meshes := $(foreach n,642 1442 2562,--mesh reference/independent/sphere_radius2_$(n).msh)
+independent_unit_meshes := $(foreach n,642 1442 2562,--mesh reference/independent/sphere_radius1_$(n).msh)
 independent:
 	@mkdir -p results/check/independent
 	$(BIN)/mcf_sphere --flow mean_curvature $(independent_meshes) --quadrature conical:4 --steps 0-6 --output results/check/independent/mcf_sphere.json
 	$(BIN)/compare_tables results/check/independent/mcf_sphere.json reference/independent/table_mcf_sphere.json --from-step 3
 	$(BIN)/check_orders results/check/independent/mcf_sphere.json --reference reference/independent
+	$(BIN)/coupled_diffusion $(independent_unit_meshes) --quadrature conical:4 --steps 0-3 --output results/check/independent/coupled_diffusion.json
+	$(BIN)/compare_tables results/check/independent/coupled_diffusion.json reference/independent/table_coupled_diffusion.json
 
 bench: configure
 	@$(call build_targets,--target bench_step)
