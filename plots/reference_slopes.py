@@ -22,26 +22,36 @@ class Placement:
     label: tuple
 
 
-def place_slopes(size, polylines, slopes, label_sizes):
+def place_slopes(size, polylines, slopes, label_sizes, owners=None):
     """A Placement for each of `slopes`, or None when they do not all fit.
 
     `size`: width and height of the panel; `polylines`: arrays (n, 2), the data; `slopes`: dy/dx in points, positive;
-    `label_sizes`: width and height of each label.
+    `label_sizes`: width and height of each label. `owners`: for each slope the one of `polylines` below which it goes
+    if there is room; None where it goes below all.
     """
     size = np.asarray(size, float)
-    data = np.concatenate([_samples(line) for line in polylines])
-    to_data = _distances(size, data)
-    free = np.where(_below(size, polylines), to_data, 0)
+    to_data = _distance_to(size, polylines)
+    below = _below(size, polylines)
+    clear = to_data  # of the data and of what has been placed
     placements = []
-    for slope, label_size in zip(slopes, label_sizes):
-        placement = _place(size, to_data, free, slope, np.asarray(label_size, float))
+    for slope, label_size, owner in zip(slopes, label_sizes, owners or [None] * len(slopes)):
+        label_size = np.asarray(label_size, float)
+        placement = None
+        if owner is not None:
+            free = np.where(_below(size, [owner]), clear, 0)
+            placement = _place(size, _distance_to(size, [owner]), free, slope, label_size)
+        placement = placement or _place(size, to_data, np.where(below, clear, 0), slope, label_size)
         if placement is None:
             return None
         placements.append(placement)
         taken = _samples(np.array([placement.start, placement.end]))
-        box = _box_samples(np.array([placement.label]), np.asarray(label_size, float))[0]
-        free = np.minimum(free, _distances(size, np.concatenate([taken, box])))
+        box = _box_samples(np.array([placement.label]), label_size)[0]
+        clear = np.minimum(clear, _distances(size, np.concatenate([taken, box])))
     return placements
+
+
+def _distance_to(size, polylines):
+    return _distances(size, np.concatenate([_samples(line) for line in polylines]))
 
 
 def _samples(polyline):

@@ -15,10 +15,11 @@ class _Parser(argparse.ArgumentParser):
         sys.exit(f"{self.prog}: {message} (--help lists what is accepted)")  # exit 1: argparse would take 2
 
 
-def run(experiment, draw, description, default_norm=None):
+def run(experiment, draw, description, default_norm=None, norms=NORMS):
     """The main function of a plotting script: `SCRIPT TABLE FOLDER [--norm NORM]`.
 
     `draw(table, norm)` yields (name, figure), name being e.g. "kll19/fig13_1"; each goes to FOLDER as PDF and PNG.
+    `norms`: what --norm accepts.
     Without a default norm there is no --norm: the figures show series and snapshots, of singular runs as well, and
     `draw(table, folder)` gets the folder of the table, where snapshots are.
     Anything wrong with the input is one line on standard error and exit 1.
@@ -27,8 +28,8 @@ def run(experiment, draw, description, default_norm=None):
     parser.add_argument("table", help=f"results/PRESET/{experiment}.json")
     parser.add_argument("folder", help="where figures go, e.g. figures")
     if default_norm:
-        parser.add_argument("--norm", choices=NORMS, default=default_norm, metavar="NORM",
-                            help=f"{', '.join(NORMS)} (default: {default_norm})")
+        parser.add_argument("--norm", choices=norms, default=default_norm, metavar="NORM",
+                            help=f"{', '.join(norms)} (default: {default_norm})")
     arguments = parser.parse_args()
     try:
         table = read_table(arguments.table, experiment, succeeded if default_norm else has_series)

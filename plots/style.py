@@ -67,7 +67,7 @@ def log_ticks(axis, low, high, length):
 
     When these do not fit or have too many digits, matplotlib's powers of ten stay.
     """
-    for mantissas in ((1, 1.5, 2, 3, 4, 5, 7), (1, 2, 5), (1, 3)):
+    for mantissas in ((1, 1.5, 2, 3, 4, 5, 7), (1, 2, 5), (1, 3), (1, 1.2, 1.5, 2, 2.5, 3, 3.5, 4, 5, 6, 7, 8, 9)):
         ticks = [m * 10.0**d for d in range(-4, 5) for m in mantissas if low <= m * 10.0**d <= high]
         if low < 1e-4 or high > 1e4 or len(ticks) < 2:
             continue
