@@ -4,6 +4,7 @@
 //
 // Sample runs:  build/bin/evolve reference/examples/sphere.json
 //               build/bin/evolve reference/examples/dumbbell.json
+//               build/bin/evolve reference/examples/tumour.json
 //
 // Writes the nodal values at the end, a time series and snapshots, as the file says; `evolve --help` explains
 // its keys.
@@ -113,16 +114,23 @@ void run_bgn(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder&
   run_flow(BgnFlow(space), config, bgn_state_on(space, config.mesh.nodes), {}, recorder);
 }
 
-void run_coupled_diffusion(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
-  using State = CoupledDiffusionState;
-  const auto& [parameters, variant, coupling] = config.coupled;
+void run_growing_sphere(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
+  const EvolveConfig::Coupled& coupled = config.coupled;
   const ExactEvolution exact = growing_sphere();
-  const ExactState<State> exact_state = [&](double t) {
+  const ExactState<CoupledDiffusionState> exact_state = [&](double t) {
     return exact_growing_sphere_state(space, exact, config.mesh.nodes, t);
   };
-  run_flow(
-      CoupledDiffusion(space, GrowingSphereProblem(parameters, variant.law, coupling), parameters, variant),
-      config, exact_state(0), exact_state, recorder);
+  const GrowingSphereProblem problem(coupled.parameters, coupled.variant.law, coupled.coupling);
+  run_flow(CoupledDiffusion(space, problem, coupled.parameters, coupled.variant), config, exact_state(0),
+           exact_state, recorder);
+}
+
+void run_tumour_growth(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
+  const EvolveConfig::Coupled& coupled = config.coupled;
+  const CoupledDiffusionState initial =
+      tumour_growth_state(space, config.mesh.nodes, coupled.kinetics, coupled.disturbance, coupled.seed);
+  run_flow(CoupledDiffusion(space, TumourGrowth(coupled.kinetics), coupled.parameters, coupled.variant),
+           config, initial, {}, recorder);
 }
 
 int evolve(const std::string& file, const json& origin) {
@@ -135,7 +143,10 @@ int evolve(const std::string& file, const json& origin) {
     if (config.flow == "mean_curvature") run_mean_curvature(config, space, recorder);
     if (config.flow == "dziuk") run_dziuk(config, space, recorder);
     if (config.flow == "bgn") run_bgn(config, space, recorder);
-    if (config.flow == "coupled_diffusion") run_coupled_diffusion(config, space, recorder);
+    if (config.flow == "coupled_diffusion") {
+      const bool is_sphere = config.coupled.problem == EvolveConfig::Coupled::growing_sphere;
+      is_sphere ? run_growing_sphere(config, space, recorder) : run_tumour_growth(config, space, recorder);
+    }
   } catch (const NumericsError& error) {
     if (!recorder.empty()) {
       write(config, recorder, error.what(), config_json, origin);

@@ -132,37 +132,67 @@ Value choice(const JsonReader& reader, const std::string& key, const std::map<st
                    listed(names));
 }
 
-EvolveConfig::Coupled coupled_problem(const JsonReader& reader, const EvolveConfig& config) {
+/// "mass", "law" and, for the growing sphere, "coupling".
+void read_coupled_variant(const JsonReader& variant, EvolveConfig::Coupled& coupled) {
   using Variant = CoupledDiffusionVariant;
   using Problem = GrowingSphereProblem;
-  EvolveConfig::Coupled coupled;
-  const std::string problem = reader.has("problem") ? reader.text("problem") : "growing_sphere";
-  if (problem != "growing_sphere")
-    throw InputError(reader.where() + ": found problem = \"" + problem + "\"; expected growing_sphere");
+  const bool is_sphere = coupled.problem == EvolveConfig::Coupled::growing_sphere;
+  variant.accept_only(is_sphere ? std::set<std::string>{"mass", "law", "coupling"}
+                                : std::set<std::string>{"mass", "law"});
+  coupled.variant.mass = choice<Variant::Mass>(
+      variant, "mass", {{"extrapolated", Variant::extrapolated}, {"reassembled", Variant::reassembled}},
+      Variant::extrapolated);
+  coupled.variant.law = choice<Variant::Law>(
+      variant, "law", {{"regularised", Variant::regularised}, {"dynamic", Variant::dynamic}},
+      Variant::regularised);
+  coupled.coupling = choice<Problem::Coupling>(
+      variant, "coupling",
+      {{"additive", Problem::additive}, {"quotient", Problem::quotient}, {"none", Problem::none}},
+      Problem::additive);
+}
+
+void read_growing_sphere(const JsonReader& parameters, const EvolveConfig& config,
+                         EvolveConfig::Coupled& coupled) {
   if (!config.surface || config.surface->name != "sphere" || config.surface->parameters.at("radius") != 1)
-    throw InputError(reader.where() +
+    throw InputError(parameters.where() +
                      ": problem growing_sphere starts from the unit sphere; expected \"surface\": {\"name\": "
                      "\"sphere\", \"radius\": 1}");
-  if (reader.has("parameters")) {
-    const JsonReader parameters(reader.object("parameters"), reader.where() + ": parameters");
-    parameters.accept_only({"alpha", "beta"});
-    coupled.parameters.alpha = parameters.number_or("alpha", 1);
-    coupled.parameters.beta = parameters.number_or("beta", 1);
-  }
-  if (reader.has("variant")) {
-    const JsonReader variant(reader.object("variant"), reader.where() + ": variant");
-    variant.accept_only({"mass", "law", "coupling"});
-    coupled.variant.mass = choice<Variant::Mass>(
-        variant, "mass", {{"extrapolated", Variant::extrapolated}, {"reassembled", Variant::reassembled}},
-        Variant::extrapolated);
-    coupled.variant.law = choice<Variant::Law>(
-        variant, "law", {{"regularised", Variant::regularised}, {"dynamic", Variant::dynamic}},
-        Variant::regularised);
-    coupled.coupling = choice<Problem::Coupling>(
-        variant, "coupling",
-        {{"additive", Problem::additive}, {"quotient", Problem::quotient}, {"none", Problem::none}},
-        Problem::additive);
-  }
+  parameters.accept_only({"alpha", "beta"});
+  coupled.parameters.alpha = parameters.number_or("alpha", 1);
+  coupled.parameters.beta = parameters.number_or("beta", 1);
+}
+
+void read_tumour_growth(const JsonReader& parameters, EvolveConfig::Coupled& coupled) {
+  parameters.accept_only({"alpha", "epsilon", "D", "a", "b", "gamma", "delta", "disturbance", "seed"});
+  coupled.parameters = tumour_growth_parameters();
+  coupled.parameters.alpha = parameters.number_or("alpha", coupled.parameters.alpha);
+  coupled.parameters.beta = parameters.number_or("epsilon", coupled.parameters.beta);
+  coupled.parameters.diffusion[1] = parameters.number_or("D", coupled.parameters.diffusion[1]);
+  TumourGrowth::Kinetics& kinetics = coupled.kinetics;
+  kinetics.a = parameters.number_or("a", kinetics.a);
+  kinetics.b = parameters.number_or("b", kinetics.b);
+  kinetics.gamma = parameters.number_or("gamma", kinetics.gamma);
+  kinetics.delta = parameters.number_or("delta", kinetics.delta);
+  coupled.disturbance = parameters.number_or("disturbance", coupled.disturbance);
+  coupled.seed = integer_within(parameters, "seed", coupled.seed, 0, 1000000);
+}
+
+EvolveConfig::Coupled coupled_problem(const JsonReader& reader, const EvolveConfig& config) {
+  using Coupled = EvolveConfig::Coupled;
+  Coupled coupled;
+  coupled.problem = choice<Coupled::Problem>(
+      reader, "problem",
+      {{"growing_sphere", Coupled::growing_sphere}, {"tumour_growth", Coupled::tumour_growth}},
+      Coupled::growing_sphere);
+  static const json none = json::object();  // the reader keeps a reference
+  const json& given = reader.has("parameters") ? reader.object("parameters") : none;
+  const JsonReader parameters(given, reader.where() + ": parameters");
+  if (coupled.problem == Coupled::growing_sphere)
+    read_growing_sphere(parameters, config, coupled);
+  else
+    read_tumour_growth(parameters, coupled);
+  if (reader.has("variant"))
+    read_coupled_variant(JsonReader(reader.object("variant"), reader.where() + ": variant"), coupled);
   return coupled;
 }
 
@@ -232,8 +262,12 @@ std::string evolve_config_help() {
          | "dziuk"                            Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5
          | "bgn"                              Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good
          | "coupled_diffusion",               nick18 (2.19)-(2.21): moved by what diffuses on the surface
-   "problem": "growing_sphere",               coupled_diffusion: nick18 7.3, from the unit sphere
-   "parameters": {"alpha": 1, "beta": 1},     coupled_diffusion
+   "problem": "growing_sphere"                coupled_diffusion: nick18 7.3, from the unit sphere (default)
+            | "tumour_growth",                activator and substrate (Schnakenberg) on any surface, from a disturbed
+                                              steady state
+   "parameters": {"alpha": 1, "beta": 1}      growing_sphere
+               | {"alpha": 1, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30, "delta": 0.4,
+                  "disturbance": 0.01, "seed": 1},                                             tumour_growth
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
    "mesh": {"file": "a.msh"}                 .msh, .off, .obj, .ply, .stl; nodes are projected to the surface
          | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
@@ -246,14 +280,14 @@ std::string evolve_config_help() {
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
    "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0},  mean_curvature
             {"mass": "extrapolated" | "reassembled", "law": "regularised" | "dynamic",
-             "coupling": "additive" | "quotient" | "none"},                                    coupled_diffusion
+             "coupling": "additive" | "quotient" | "none"},   coupled_diffusion; coupling: growing_sphere
    "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
               "every": 10,                    at every 10th step (default 0: none of these)
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
 Surfaces and their defaults:
 )" + named_surfaces_help() +
-         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u) of the last step, one row a node
+         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u, or u1, u2) of the last step, one row a node
 in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
 (degrees), worst_radius_ratio, for mean_curvature also min_nu, max_nu. Snapshots have v, nu, H, and kappa = M^-1 A x. Where
 the flow has no nu, max_H and willmore_energy, and nu and H of snapshots, are those of the discrete surface.

@@ -9,6 +9,7 @@
 #include "solver/fe/quadrature.hpp"
 #include "solver/flows/growing_sphere.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/flows/tumour_growth.hpp"
 #include "solver/mesh/mesh.hpp"
 #include "solver/time/integrate.hpp"
 
@@ -24,11 +25,14 @@ struct EvolveConfig {
   bool start_given = false;  ///< whether grid.start comes from the file
   Quadrature rule;
   MeanCurvatureFlow::Variant mean_curvature;
-  /// The coupled problem, of which there is one: the growing sphere.
   struct Coupled {
+    enum Problem { growing_sphere, tumour_growth } problem = growing_sphere;
     CoupledDiffusionParameters parameters;
     CoupledDiffusionVariant variant;
-    GrowingSphereProblem::Coupling coupling = GrowingSphereProblem::additive;
+    GrowingSphereProblem::Coupling coupling = GrowingSphereProblem::additive;  ///< of the growing sphere
+    TumourGrowth::Kinetics kinetics;                                           ///< of the tumour
+    double disturbance = 0.01;                                                 ///< of its steady state
+    int seed = 1;
   } coupled;
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
   SnapshotPlan snapshots;

@@ -130,6 +130,21 @@ TEST_F(Evolve, RunsTheCoupledFlow) {
   EXPECT_NE(read_json(nodal).at("u"), end.at("u"));
 }
 
+TEST_F(Evolve, GrowsATumourOnAnySurface) {
+  const json tumour = {{"flow", "coupled_diffusion"}, {"problem", "tumour_growth"}, {"steps", 3}};
+  ASSERT_EQ(run(config(tumour)), exit_done) << message;
+  const json end = read_json(nodal);
+  for (const char* key : {"u1", "u2", "v"}) EXPECT_EQ(end.at(key).size(), end.at("x").size());
+  EXPECT_GT(read_json(series).at("area")[3], read_json(series).at("area")[0]);
+  json other = config(tumour);
+  other["surface"] = {{"name", "torus"}};
+  other["mesh"] = {{"edge_length", 0.3}};
+  ASSERT_EQ(run(other), exit_done) << message;
+  other["parameters"] = {{"beta", 1}};
+  EXPECT_EQ(run(other), exit_usage);
+  EXPECT_THAT(message, HasSubstr("known are D, a, alpha"));
+}
+
 TEST_F(Evolve, WritesSnapshotsAtTheTimesAskedFor) {
   const std::string pvd = (folder / "snapshots/run.pvd").string();
   const json output = {{"vtu", pvd}, {"times", {0.015}}};
@@ -152,7 +167,8 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"flow", "bgn"}, {"bdf", 2}}, "bdf = 2; expected 1 to 1"},
       {{{"flow", "dziuk"}, {"variant", {{"normalise", true}}}}, "no variants"},
       {{{"problem", "growing_sphere"}}, "expected no key problem"},
-      {{{"flow", "coupled_diffusion"}, {"problem", "tumour"}}, "expected growing_sphere"},
+      {{{"flow", "coupled_diffusion"}, {"problem", "tumour"}},
+       "expected one of growing_sphere, tumour_growth"},
       {{{"flow", "coupled_diffusion"}, {"surface", {{"radius", 2}}}}, "unit sphere"},
       {{{"flow", "coupled_diffusion"}, {"parameters", {{"alpha", 0}}}}, "alpha = 0"},
       {{{"flow", "coupled_diffusion"}, {"variant", {{"coupling", "strong"}}}}, "additive, none, quotient"},

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/tumour_growth.hpp"
+
+#include <random>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+TumourGrowth::TumourGrowth(const Kinetics& kinetics) : kinetics_(kinetics) {
+  const auto& [a, b, gamma, delta] = kinetics;
+  if (!(a > 0 && b > 0 && gamma > 0 && delta > 0)) {
+    throw InputError(
+        format("tumour growth: found a = %g, b = %g, gamma = %g, delta = %g; expected positive numbers", a, b,
+               gamma, delta));
+  }
+}
+
+Eigen::RowVector2d TumourGrowth::steady_state(const Kinetics& kinetics) {
+  const double u1 = kinetics.a + kinetics.b;
+  return {u1, kinetics.b / (u1 * u1)};
+}
+
+CoupledDiffusionParameters tumour_growth_parameters() {
+  CoupledDiffusionParameters parameters;
+  parameters.alpha = 1;
+  parameters.beta = 0.01;
+  parameters.diffusion = {1, 10};
+  return parameters;
+}
+
+CoupledDiffusionState tumour_growth_state(const SurfaceSpace& space, const Field& x,
+                                          const TumourGrowth::Kinetics& kinetics, double disturbance,
+                                          unsigned seed) {
+  // The distributions of <random> differ from library to library, its engines do not.
+  std::mt19937 engine(seed);
+  const auto between_minus_one_and_one = [&] { return 2.0 * engine() / std::mt19937::max() - 1; };
+  const Eigen::RowVector2d steady = TumourGrowth::steady_state(kinetics);
+  Field u(x.rows(), 2);
+  for (int j = 0; j < u.rows(); ++j) {
+    for (int l = 0; l < 2; ++l) u(j, l) = steady[l] * (1 + disturbance * between_minus_one_and_one());
+  }
+  return coupled_diffusion_state(space, 0, x, Field::Zero(x.rows(), 3), u);
+}
+
+}  // namespace esfem

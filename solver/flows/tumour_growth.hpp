@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/flows/coupled_diffusion.hpp"
+
+namespace esfem {
+
+/// Growth of a tumour, as the field's literature has it (Barreira, Elliott, Madzvamuse, J. Math. Biol. 63,
+/// 2011): an activator u_1 and a substrate u_2 with Schnakenberg's kinetics on a surface that grows where
+/// there is activator,
+///   f_1 = gamma (a - u_1 + u_1² u_2),  f_2 = gamma (b - u_1² u_2),  g = delta u_1,
+/// with diffusion 1 and D and the regularised law v - alpha Lap v + epsilon H nu = g nu (epsilon is beta of
+/// the flow).
+class TumourGrowth {
+ public:
+  static constexpr int species = 2;
+
+  struct Kinetics {
+    double a = 0.1, b = 0.9, gamma = 30, delta = 0.4;  ///< gamma > 0 is the size of the tumour
+  };
+
+  /// Throws InputError unless all are positive.
+  explicit TumourGrowth(const Kinetics& kinetics);
+
+  void f(double, const PointData<2>& p, Pack (&out)[2]) const {
+    const Pack reaction = p.u[0] * p.u[0] * p.u[1];
+    out[0] = kinetics_.gamma * (kinetics_.a - p.u[0] + reaction);
+    out[1] = kinetics_.gamma * (kinetics_.b - reaction);
+  }
+
+  Pack g(double, const PointData<2>& p) const { return kinetics_.delta * p.u[0]; }
+
+  /// The state without space: u_1 = a + b, u_2 = b/(a + b)², where f_1 = f_2 = 0. It is unstable for D = 10.
+  static Eigen::RowVector2d steady_state(const Kinetics& kinetics);
+
+ private:
+  Kinetics kinetics_;
+};
+
+/// alpha = 1, beta = epsilon = 0.01, diffusion 1 and 10.
+CoupledDiffusionParameters tumour_growth_parameters();
+
+/// The steady state on nodes x, every nodal value disturbed by up to `disturbance` of itself (a fixed
+/// sequence of pseudo-random numbers for each seed, the same on every machine), and v = 0; t = 0.
+CoupledDiffusionState tumour_growth_state(const SurfaceSpace& space, const Field& x,
+                                          const TumourGrowth::Kinetics& kinetics, double disturbance = 0.01,
+                                          unsigned seed = 1);
+
+}  // namespace esfem
