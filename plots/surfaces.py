@@ -15,6 +15,7 @@ from table import TableError
 
 LIGHT = np.array([-0.35, 0.50, 0.79])  # from the left, from above, from the front
 EDGE_TONE = 0.1
+SHADE_OF_PLAIN = 0.75  # of facets in full light: a field's colour shows unchanged there
 TONES = 96  # few colours make small files
 # Tones are drawn in grey and coloured afterwards, from dark (edges) over blue (faces) to white (highlights).
 RAMP = LinearSegmentedColormap.from_list("surface", [(0, "#000814"), (0.15, "#1d2b40"), (0.36, "#577294"),
@@ -156,10 +157,18 @@ def extent(surface, rotation):
     return points[:, 0].min(), points[:, 0].max(), points[:, 1].min(), points[:, 1].max()
 
 
-def draw_surface(axes, surface, rotation, *, facets_per_side=3, linewidth=0.2, window=None):
+def facet_values(surface, values, n):
+    """A nodal field (N,) in the middles of the n*n facets of each element: (E*n*n,), in the order of `facets`."""
+    xi, small, _ = lattice(n)
+    middles = xi[small].mean(axis=1)
+    return (values[surface.triangles] @ shape_functions(middles, surface.triangles.shape[1]).T).ravel()
+
+
+def draw_surface(axes, surface, rotation, *, facets_per_side=3, linewidth=0.2, window=None, colours=None):
     """Draws the surface with its element edges into `axes`, in the surface's units.
 
     `linewidth` of the edges in points, 0: none. `window` (left, right, low, high): draws no facets that are out of it.
+    `colours`: (nodal values, ScalarMappable) for a surface coloured by a field; else it is blue.
     The picture is a raster image in a PDF, too.
     """
     split = facets(surface, rotation, facets_per_side)
@@ -181,8 +190,14 @@ def draw_surface(axes, surface, rotation, *, facets_per_side=3, linewidth=0.2, w
     order = np.argsort(np.concatenate([depth, edge_depth]), kind="stable")
     polygons = np.concatenate([shown, edges[:, [0, 1, 1]]])[order, :, :2]
     tones = np.concatenate([shade(split.normals[front]), np.full(len(edges), EDGE_TONE)])[order]
-    greys = np.tile(tones[:, None], 3)
     # A facet has a rim of its own colour: else the background shines through between two of them.
     widths = np.concatenate([np.full(len(shown), 0.2), np.full(len(edges), linewidth)])[order]
-    axes.add_collection(PolyCollection(polygons, facecolors=greys, edgecolors=greys, linewidths=widths, rasterized=True,
-                                       agg_filter=_colour_tones))
+    if colours is None:
+        faces = np.tile(tones[:, None], 3)
+    else:
+        values, mappable = colours
+        field = mappable.to_rgba(facet_values(surface, values, facets_per_side)[front])[:, :3]
+        field *= 0.45 + 0.55 * np.clip(shade(split.normals[front]) / SHADE_OF_PLAIN, 0, 1)[:, None]
+        faces = np.concatenate([field, np.full((len(edges), 3), EDGE_TONE)])[order]
+    axes.add_collection(PolyCollection(polygons, facecolors=faces, edgecolors=faces, linewidths=widths, rasterized=True,
+                                       agg_filter=_colour_tones if colours is None else None))

@@ -19,6 +19,7 @@ import coupled_diffusion
 import mcf_dumbbell
 import style
 import surfaces
+import tumour_growth
 from convergence import Curve, Panel, convergence_figure, curves, draw_panels
 from mcf_sphere import QUANTITIES, draw
 from script import run
@@ -452,6 +453,14 @@ def write_snapshots(table, folder):
 def lines_of(axes):
     return [line for line in axes.lines if len(line.get_xdata()) > 2]
 
+    def test_values_of_facets_are_those_of_the_quadratic_field(self):
+        corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]])
+        nodes = np.vstack([corners, (corners + np.roll(corners, -1, axis=0)) / 2])
+        surface = Surface(nodes, np.arange(6)[None, :], {})
+        field = lambda x: 1 + x[..., 0]**2 - 3 * x[..., 0] * x[..., 1]
+        middles = surfaces.facets(surface, np.eye(3), 3).corners.mean(axis=1)
+        np.testing.assert_allclose(surfaces.facet_values(surface, field(nodes), 3), field(middles), atol=1e-14)
+
 
 class Dumbbell(unittest.TestCase):
     @classmethod
@@ -726,6 +735,29 @@ class CoupledDiffusion(unittest.TestCase):
             refused = subprocess.run([*command, "--norm", "nodal_L2"], capture_output=True, text=True, check=False)
             self.assertEqual((refused.returncode, refused.stderr.count("\n")), (1, 1))
             self.assertIn("'nodal', 'lifted'", refused.stderr)
+
+
+class Tumour(unittest.TestCase):
+    def test_surfaces_are_coloured_and_missing_ones_named(self):
+        points = [[0, 0, 1.0], [1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, -1.0]]
+        triangles = [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [5, 2, 1], [5, 3, 2], [5, 4, 3], [5, 1, 4]]
+        with tempfile.TemporaryDirectory() as folder:
+            cell = pathlib.Path(folder, "cells/tumour_growth/h0_tau0")
+            cell.mkdir(parents=True)
+            for name, size in (("a.vtu", 1), ("b.vtu", 2)):
+                meshio.Mesh(size * np.array(points), [("triangle", triangles)],
+                            point_data={"u1": np.linspace(0.5, 1.5, 6)}).write(cell / name)
+            times = [0.0, 1.0]
+            row = {"cell": "h0_tau0", "h": 1.4, "nodes": 6, "tau": 1.0, "steps": 1, "status": "ok", "errors": {},
+                   "snapshots": [{"t": 0, "file": "a.vtu"}, {"t": 1, "file": "b.vtu"}],
+                   "series": {"t": times, "area": times, "min_u1": times, "max_u1": times}}
+            (name, figure), = tumour_growth.draw({"rows": [row]}, folder)
+            self.assertEqual(name, "gallery/tumour_growth")
+            widths = [axes.get_position().width for axes in figure.axes[:2]]
+            self.assertAlmostEqual(widths[1] / widths[0], 2)  # one scale for all
+            row["snapshots"][1]["file"] = "c.vtu"
+            with self.assertRaisesRegex(TableError, "c.vtu: no such snapshot"):
+                list(tumour_growth.draw({"rows": [row]}, folder))
 
 
 if __name__ == "__main__":

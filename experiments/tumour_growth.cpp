@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Growth of a tumour: a surface that is moved by what reacts and diffuses on it, without a formula for either
+//
+// Sample runs:  build/bin/tumour_growth --preset check --output tumour.json
+//               build/bin/tumour_growth --levels 0 --steps 1 --gamma 100
+//
+// Writes:       results/paper/tumour_growth.{json,csv,tex}, from which plots/tumour_growth.py draws
+//               figures/gallery/tumour_growth, and the surfaces as
+//               results/paper/cells/tumour_growth/CELL/surfaces.pvd
+//
+// Schnakenberg's kinetics of an activator u_1 and a substrate u_2 on the unit sphere, which grows where there
+// is activator (solver/flows/tumour_growth.hpp): nick18 (2.7)-(2.9) for two species, discretised by
+// (2.19)-(2.21) with quadratic elements and BDF2. It starts from the steady state without space, disturbed by
+// 1% (a fixed sequence of pseudo-random numbers).
+//
+// Expected: the steady state is unstable (Turing), a pattern appears, and the sphere loses its shape. No
+// orders.
+#include "solver/flows/tumour_growth.hpp"
+
+#include <cmath>
+
+#include "experiments/harness/experiment.hpp"
+#include "solver/analysis/run_recorder.hpp"
+#include "solver/error.hpp"
+#include "solver/mesh/mesh.hpp"
+
+namespace {
+
+using namespace esfem;
+
+const double end_time = 5, largest_tau = 0.01;
+const int disturbance_seed = 1;
+
+double step_size(int k) {
+  return largest_tau * std::pow(2.0, -k);
+}
+int step_count(int k) {
+  return static_cast<int>(std::lround(end_time / step_size(k)));
+}
+
+struct Setting {
+  int degree, bdf;
+  std::vector<int> levels, steps;
+  Start start;
+  double gamma;
+};
+
+Setting resolve(const Options& options, double gamma) {
+  if (!options.meshes.empty())
+    throw InputError("--mesh: the tumour starts from a sphere; expected --levels (evolve takes any surface)");
+  const bool paper = options.preset == "paper";
+  Setting setting;
+  setting.degree = options.degree.value_or(2);
+  setting.bdf = options.bdf.value_or(2);
+  setting.levels = options.levels.value_or(paper ? std::vector<int>{0, 1} : std::vector<int>{0});
+  setting.steps = options.steps.value_or(paper ? std::vector<int>{1} : std::vector<int>{0});
+  setting.start = options.start.value_or(parse_start("substeps:16"));
+  if (setting.start.kind == Start::exact)
+    throw InputError("--start exact: there is no exact solution; expected cascade or substeps:K");
+  setting.gamma = gamma;
+  return setting;
+}
+
+Row run_cell(const Setting& setting, int level, int k, const std::string& folder) {
+  // 1. The unit sphere and the finite element space on it: 2,562 nodes at level 0, 10,242 at level 1
+  // (quadratic elements).
+  Mesh mesh = lagrange_mesh(icosphere(1, 3 + level), setting.degree);
+  project_nodes(mesh, sphere(1));
+  const SurfaceSpace space(mesh);
+
+  // 2. The flow and its disturbed steady state.
+  TumourGrowth::Kinetics kinetics;
+  kinetics.gamma = setting.gamma;
+  const CoupledDiffusionParameters parameters = tumour_growth_parameters();
+  CoupledDiffusion<TumourGrowth> flow(space, TumourGrowth(kinetics), parameters, {});
+  const CoupledDiffusionState initial =
+      tumour_growth_state(space, mesh.nodes, kinetics, 0.01, disturbance_seed);
+
+  // 3. The time steps.
+  const TimeGrid grid{setting.bdf, step_size(k), step_count(k), setting.start};
+  RunRecorder recorder(space, {folder.empty() ? "" : folder + "/surfaces.pvd", {2, 3, 4}, 0});
+  integrate(flow, grid, initial, {}, [&](int n, const CoupledDiffusionState& state) {
+    recorder.record(n, state.t, state.x, point_fields(state));
+    Series& series = recorder.series();
+    series["min_u1"].push_back(state.u.col(0).minCoeff());
+    series["max_u1"].push_back(state.u.col(0).maxCoeff());
+    series["mass_u1"].push_back(state.Mu.col(0).sum());
+    series["mass_u2"].push_back(state.Mu.col(1).sum());
+  });
+  recorder.finish();
+
+  // 4. The row of the table.
+  Row row;
+  row.level = level;
+  row.h = mesh_quality(mesh.elements, mesh.nodes).h;
+  row.nodes = space.dofs();
+  row.tau = grid.tau;
+  row.steps = grid.steps;
+  row.series = recorder.series();
+  row.values["contrast"] = row.series["max_u1"].back() - row.series["min_u1"].back();
+  row.values["area_ratio"] = row.series["area"].back() / row.series["area"].front();
+  row.values["last_worst_angle"] = row.series["worst_angle"].back();
+  for (const RunRecorder::Snapshot& snapshot : recorder.snapshots()) {
+    row.more["snapshots"].push_back({{"t", snapshot.t}, {"file", snapshot.file}});
+  }
+  return row;
+}
+
+std::vector<Cell> cells(const Setting& setting) {
+  std::vector<Cell> list;
+  for (int level : setting.levels) {
+    for (int k : setting.steps) {
+      const double nodes = 2562 * std::pow(4, level);
+      Cell cell{format("h%d_tau%d", level, k), nodes * step_count(k) * 4e-6,
+                [=](const std::string& folder) { return run_cell(setting, level, k, folder); }};
+      cell.planned.level = level;
+      cell.planned.tau = step_size(k);
+      cell.planned.steps = step_count(k);
+      list.push_back(cell);
+    }
+  }
+  return list;
+}
+
+nlohmann::json parameters(const Setting& setting, const std::string& preset) {
+  return {{"preset", preset},
+          {"end_time", end_time},
+          {"degree", setting.degree},
+          {"bdf", setting.bdf},
+          {"gamma", setting.gamma},
+          {"seed", disturbance_seed},
+          {"start", to_string(setting.start)}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  double gamma = TumourGrowth::Kinetics().gamma;
+  Experiment experiment;
+  experiment.stem = "tumour_growth";
+  experiment.paper = "esfem";
+  experiment.help =
+      "Growth of a tumour from the unit sphere to t = 5: time series and snapshots of a surface that grows "
+      "where there is\n"
+      "activator. Step sizes 0.01 2^-k; level 0: 2,562 nodes, level 1: 10,242. No units.\n\n"
+      "Example: tumour_growth --levels 0 --steps 1 --output tumour.json";
+  experiment.add_options = [&](CLI::App& app) {
+    app.add_option("--gamma", gamma, "size of the tumour: factor of the kinetics")
+        ->check(CLI::PositiveNumber)
+        ->capture_default_str()
+        ->group("Method (not given: as in the preset)");
+  };
+  experiment.cells = [&](const Options& options) { return cells(resolve(options, gamma)); };
+  experiment.parameters = [&](const Options& options) {
+    return parameters(resolve(options, gamma), options.preset);
+  };
+  return run_experiment(experiment, argc, argv);
+}
