@@ -12,7 +12,7 @@
 // Schnakenberg's kinetics of an activator u_1 and a substrate u_2 on the unit sphere, which grows where there
 // is activator (solver/flows/tumour_growth.hpp): nick18 (2.7)-(2.9) for two species, discretised by
 // (2.19)-(2.21) with quadratic elements and BDF2. It starts from the steady state without space, disturbed by
-// 1% (a fixed sequence of pseudo-random numbers).
+// at most 1%, by the same function of space on every mesh.
 //
 // Expected: the steady state is unstable (Turing), a pattern appears, and the sphere loses its shape. No
 // orders.

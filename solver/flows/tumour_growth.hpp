@@ -40,8 +40,9 @@ class TumourGrowth {
 /// alpha = 1, beta = epsilon = 0.01, diffusion 1 and 10.
 CoupledDiffusionParameters tumour_growth_parameters();
 
-/// The steady state on nodes x, every nodal value disturbed by up to `disturbance` of itself (a fixed
-/// sequence of pseudo-random numbers for each seed, the same on every machine), and v = 0; t = 0.
+/// The steady state on nodes x, disturbed by up to `disturbance` of itself, and v = 0; t = 0. The disturbance
+/// is a mean of plane waves whose vectors and phases are pseudo-random: a function of space alone, the same
+/// for every mesh and machine.
 CoupledDiffusionState tumour_growth_state(const SurfaceSpace& space, const Field& x,
                                           const TumourGrowth::Kinetics& kinetics, double disturbance = 0.01,
                                           unsigned seed = 1);
