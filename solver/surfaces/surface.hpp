@@ -29,6 +29,8 @@ struct Surface {
   int euler_characteristic;
   /// Closed form of the closest point, where there is one; otherwise Newton's method finds it.
   std::function<Vec3(const Vec3&)> closed_form_closest_point = {};
+  /// The mean curvature div(grad d/|grad d|) of the level set through y as a function of space.
+  std::function<LevelSetJet(const Vec3&)> mean_curvature_jet = {};
 
   /// Outward unit normal of the level set through y. Pointwise; y need not lie on the surface.
   Vec3 normal(const Vec3& y) const;
@@ -37,6 +39,11 @@ struct Surface {
   Mat3 weingarten(const Vec3& y) const;
   /// Mean curvature kappa_1 + kappa_2 = tr grad_Gamma nu (kll19 (2.2)); 2/R on a sphere.
   double mean_curvature(const Vec3& y) const;
+  /// Tangential gradient grad_Gamma H. y must lie on the surface.
+  Vec3 mean_curvature_gradient(const Vec3& y) const;
+  /// Delta_Gamma H = tr(P Hess H) - H nu . grad H, for any extension of H into space. y must lie on the
+  /// surface.
+  double mean_curvature_laplacian(const Vec3& y) const;
   struct Shape {
     Vec3 normal;
     Mat3 weingarten;

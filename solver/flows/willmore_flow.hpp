@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "solver/assembly/surface_space.hpp"
+#include "solver/linalg/block_solver.hpp"
+#include "solver/mesh/write_vtu.hpp"
+#include "solver/surfaces/surface.hpp"
+#include "solver/time/history.hpp"
+
+namespace esfem {
+
+/// Willmore flow and surface diffusion by evolution equations for mean curvature and normal: kll21
+/// (3.4)-(3.5), linearly implicit BDF.
+///
+/// Unknown nodal vectors: positions x, velocity v = V nu, u = (H, nu) and w = (V, z), where V is the normal
+/// velocity, Delta H + Q, and z = Delta nu + |A|² nu, which is grad H on a smooth surface.
+class WillmoreFlow {
+ public:
+  struct Variant {
+    /// willmore: Q = -H³/2 + |A|² H of (2.2), the flow that decreases 1/2 int H²; surface_diffusion: Q = 0
+    /// (1.2).
+    enum Law { willmore, surface_diffusion } law = willmore;
+    /// How F(x, u) w of (3.5a) is taken: extrapolated, F(x~, u~) w~; implicit, F(x~, u~) w^n, which on the
+    /// Clifford torus is unstable for step sizes from 0.02 to 0.1.
+    enum Coupling { extrapolated, implicit } F = extrapolated;
+    bool project =
+        true;  ///< after each step nu_h to unit length and z_h to the plane normal to it, in the nodes (§7.1)
+    /// lambda >= 0: adds lambda int (n - nu_h) . phi to the equation of nu, n the normal of Gamma_h, and
+    /// lambda int (div nu_h - H_h) phi + nu_h . grad phi to that of H. Not in the paper; zero for the exact
+    /// solution. It keeps nu_h and H_h from drifting away from the surface that they belong to. 1/time;
+    /// stable for lambda tau <= 0.8.
+    double relaxation = 0;
+  };
+
+  struct State {
+    double t = 0;
+    Field x;  ///< N x 3
+    Field v;  ///< N x 3
+    Field u;  ///< N x 4: H, nu_1, nu_2, nu_3
+    Field w;  ///< N x 4: V, z_1, z_2, z_3
+    static constexpr NamedField<State> fields[] = {
+        {"x", &State::x}, {"v", &State::v}, {"u", &State::u}, {"w", &State::w}};
+  };
+
+  /// The space gives elements, degree and quadrature; it must outlive the flow. theta (N x 4): the correction
+  /// of (3.7), see willmore_theta; none when it is empty.
+  WillmoreFlow(const SurfaceSpace& space, Variant variant, Field theta = {});
+  ~WillmoreFlow();
+  WillmoreFlow(WillmoreFlow&&);
+
+  /// One step of (3.4)-(3.5) with BDF of order q: fills next.x, next.v, next.u and next.w. Throws
+  /// SingularityError where the surface is singular or no longer resolved (regularity.hpp).
+  void step(const History<State>& history, int q, double tau, State& next);
+
+ private:
+  struct ImplicitCoupling;
+  const SurfaceSpace& space_;
+  Variant variant_;
+  Field theta_;
+  SymmetricMatrix M_, A_;
+  BlockSolver block_;
+  std::unique_ptr<ImplicitCoupling> implicit_;
+  Field x_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
+};
+
+/// Start of a run.
+struct WillmoreStart {
+  WillmoreFlow::State state;  ///< t = 0
+  Field theta;                ///< N x 4: what WillmoreFlow takes; empty without the correction
+};
+
+/// Starting values of a surface that its nodes x lie on: H, nu and, with_theta, V and z of the surface
+/// (derivatives by autodiff) with the theta (3.6) that belongs to them; otherwise V and z from (3.5b).
+WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x,
+                                WillmoreFlow::Variant::Law law, bool with_theta);
+
+/// Starting values of a surface of which only the nodes x are known: nu and H as those of mean curvature flow
+/// (discrete_mean_curvature_state), V and z from (3.5b).
+WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x,
+                                      WillmoreFlow::Variant::Law law);
+
+/// The flow's own nodal fields beside x: v, nu, H, V, z.
+std::vector<PointField> point_fields(const WillmoreFlow::State& state);
+
+/// x, nu, H side by side (N x 7), the columns of the error tables.
+Field table_columns(const WillmoreFlow::State& state);
+
+}  // namespace esfem

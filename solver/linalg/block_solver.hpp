@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "solver/assembly/symmetric_matrix.hpp"
+
+namespace esfem {
+
+/// Solver of the block systems of fourth order flows,
+///   alpha M u - beta A w = r,
+///   gamma A u +      M w = s,      alpha, beta, gamma > 0,
+/// for matrices M, A on one pattern: kll21 (3.5) after BDF in time (alpha = delta_0/tau, beta = gamma = 1),
+/// and bk22 (8.3) with -w for w.
+///
+/// With kappa² = gamma/(alpha beta) and y = kappa alpha u + i w the system is the complex symmetric
+///   (M + i kappa beta A) y = kappa r + i s
+/// of half the size: its real part is kappa times the first line, its imaginary part the second, because
+/// kappa² alpha beta = gamma. Its real part M is positive definite, so that no pivoting is needed (Higham,
+/// Math. Comp. 67, 1998). Factorised by MUMPS; symbolic analysis once, numbers per call.
+class BlockSolver {
+ public:
+  /// Symbolic analysis. Throws NumericsError when it fails.
+  explicit BlockSolver(std::shared_ptr<const SparsityPattern> pattern);
+  ~BlockSolver();
+  BlockSolver(const BlockSolver&) = delete;
+  BlockSolver& operator=(const BlockSolver&) = delete;
+
+  /// Throws InputError unless the factors are positive, NumericsError when the matrix is singular or not
+  /// finite.
+  void factorise(double alpha, double beta, double gamma, const SymmetricMatrix& M, const SymmetricMatrix& A);
+  /// Solves for all columns at once, in place: the right-hand sides r and s (N x c) become u and w.
+  void solve(Field& r_to_u, Field& s_to_w);
+
+ private:
+  struct Mumps;
+  std::unique_ptr<Mumps> mumps_;
+};
+
+}  // namespace esfem
