@@ -5,50 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <vector>
 
 #include "solver/error.hpp"
-
-// Present when the BLAS is OpenBLAS and when CHOLMOD was built with OpenMP; null otherwise.
-extern "C" {
-void openblas_set_num_threads(int) __attribute__((weak));
-int omp_get_max_active_levels() __attribute__((weak));
-void omp_set_max_active_levels(int) __attribute__((weak));
-}
+#include "solver/linalg/thread_limit.hpp"
 
 namespace esfem {
-namespace {
-
-/// How many threads the user allows by OMP_NUM_THREADS; 1 without it.
-int allowed_threads() {
-  const char* value = std::getenv("OMP_NUM_THREADS");
-  return value ? std::max(1, std::atoi(value)) : 1;
-}
-
-/// While it lives, BLAS and CHOLMOD use no more than the allowed threads. CHOLMOD asks OpenMP for four by an
-/// explicit clause, which OMP_NUM_THREADS does not lower; so with one thread allowed, OpenMP regions are made
-/// serial.
-class ThreadLimit {
- public:
-  ThreadLimit() {
-    const int threads = allowed_threads();
-    if (openblas_set_num_threads) openblas_set_num_threads(threads);
-    if (threads > 1 || !omp_set_max_active_levels || !omp_get_max_active_levels) return;
-    levels_ = omp_get_max_active_levels();
-    omp_set_max_active_levels(0);
-  }
-  ~ThreadLimit() {
-    if (levels_ >= 0) omp_set_max_active_levels(levels_);
-  }
-  ThreadLimit(const ThreadLimit&) = delete;
-  ThreadLimit& operator=(const ThreadLimit&) = delete;
-
- private:
-  int levels_ = -1;
-};
-
-}  // namespace
 
 struct SparseCholesky::Cholmod {
   std::shared_ptr<const SparsityPattern> pattern;
