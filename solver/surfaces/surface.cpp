@@ -28,6 +28,19 @@ Surface::Shape Surface::shape_at(const Vec3& y) const {
   return {nu, projection * d.hessian * projection / slope};
 }
 
+Vec3 Surface::mean_curvature_gradient(const Vec3& y) const {
+  const Vec3 nu = normal(y), gradient = mean_curvature_jet(y).gradient;
+  return gradient - nu.dot(gradient) * nu;
+}
+
+// For an extension f of a function on the surface, grad_Gamma f = grad f - (nu . grad f) nu, whose surface
+// divergence is tr(P Hess f) - (nu . grad f) div_Gamma nu - nu . grad_Gamma(nu . grad f); the last is zero.
+double Surface::mean_curvature_laplacian(const Vec3& y) const {
+  const Vec3 nu = normal(y);
+  const LevelSetJet H = mean_curvature_jet(y);
+  return H.hessian.trace() - nu.dot(H.hessian * nu) - H.value * nu.dot(H.gradient);
+}
+
 namespace {
 
 /// The point of {d = 0} that Newton's method along the gradient finds from x; |d| is at round-off.

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "solver/surfaces/nested_jets.hpp"
@@ -55,31 +57,73 @@ struct Surface {
   Vec3 closest_point(const Vec3& x) const;
 };
 
+template <class T>
+using SpaceJet = ceres::Jet<T, 3>;
+
+/// f and its first two derivatives in the point x, as a Jet of Jets over the scalar of x.
+template <class T, class Function>
+SpaceJet<SpaceJet<T>> second_jet(const Function& f, const std::array<T, 3>& x) {
+  const T one = ceres::FromDouble<T>::make(1.0);
+  std::array<SpaceJet<SpaceJet<T>>, 3> arguments;
+  for (int i = 0; i < 3; ++i) {
+    SpaceJet<T> inner(x[i]);
+    inner.v[i] = one;
+    arguments[i] = SpaceJet<SpaceJet<T>>(inner);
+    arguments[i].v[i] = SpaceJet<T>(one);
+  }
+  return f(arguments[0], arguments[1], arguments[2]);
+}
+
+/// The same for f in space, as numbers.
+template <class Function>
+LevelSetJet level_set_jet(const Function& f, const Vec3& y) {
+  const auto jet = second_jet<double>(f, {y[0], y[1], y[2]});
+  LevelSetJet result;
+  result.value = jet.a.a;
+  for (int i = 0; i < 3; ++i) {
+    result.gradient[i] = jet.v[i].a;
+    for (int j = 0; j < 3; ++j) result.hessian(i, j) = jet.v[i].v[j];
+  }
+  return result;
+}
+
+/// Mean curvature div(grad d/|grad d|) = (Delta d - n . (Hess d) n)/|grad d|, n = grad d/|grad d|, of the
+/// level set through x.
+template <class T, class LevelSet>
+T level_set_mean_curvature(const LevelSet& d, const std::array<T, 3>& x) {
+  const auto jet = second_jet<T>(d, x);
+  T squared_slope = jet.v[0].a * jet.v[0].a;
+  T laplacian = jet.v[0].v[0], along_gradient = ceres::FromDouble<T>::make(0.0);
+  for (int i = 1; i < 3; ++i) {
+    squared_slope = squared_slope + jet.v[i].a * jet.v[i].a;
+    laplacian = laplacian + jet.v[i].v[i];
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) along_gradient = along_gradient + jet.v[i].a * jet.v[i].v[j] * jet.v[j].a;
+  return (laplacian - along_gradient / squared_slope) / sqrt(squared_slope);
+}
+
 /// A surface from a functor with `template <class T> T operator()(const T& x1, const T& x2, const T& x3)
-/// const`: gradient and Hessian come from Ceres Jets, so the formula of d is all that one writes.
+/// const`: all derivatives come from Ceres Jets, so the formula of d (made of + - * / sqrt) is all that one
+/// writes.
 template <class LevelSet>
 Surface make_surface(std::string name, LevelSet d, double bounding_radius, double smallest_curvature_radius,
                      int euler_characteristic, std::map<std::string, double> parameters = {}) {
-  auto jet = [d](const Vec3& y) {
-    using Jet1 = ceres::Jet<double, 3>;
-    using Jet2 = ceres::Jet<Jet1, 3>;
-    Jet2 arguments[3];
-    for (int i = 0; i < 3; ++i) {
-      arguments[i] = Jet2(Jet1(y[i], i));
-      arguments[i].v[i] = Jet1(1.0);
-    }
-    const Jet2 value = d(arguments[0], arguments[1], arguments[2]);
-    LevelSetJet result;
-    result.value = value.a.a;
-    for (int i = 0; i < 3; ++i) {
-      result.gradient[i] = value.v[i].a;
-      for (int j = 0; j < 3; ++j) result.hessian(i, j) = value.v[i].v[j];
-    }
-    return result;
+  Surface surface = {std::move(name),
+                     std::move(parameters),
+                     [d](const Vec3& y) { return level_set_jet(d, y); },
+                     [d](const Vec3& y) { return d(y[0], y[1], y[2]); },
+                     bounding_radius,
+                     smallest_curvature_radius,
+                     euler_characteristic};
+  surface.mean_curvature_jet = [d](const Vec3& y) {
+    return level_set_jet(
+        [&d](const auto& x1, const auto& x2, const auto& x3) {
+          return level_set_mean_curvature<std::decay_t<decltype(x1)>>(d, {x1, x2, x3});
+        },
+        y);
   };
-  auto level = [d](const Vec3& y) { return d(y[0], y[1], y[2]); };
-  return {std::move(name),           std::move(parameters), jet, level, bounding_radius,
-          smallest_curvature_radius, euler_characteristic};
+  return surface;
 }
 
 /// {|x| = radius}

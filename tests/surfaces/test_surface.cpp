@@ -4,7 +4,9 @@
 #include <cmath>
 #include <random>
 
+#include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
+#include "solver/mesh/read.hpp"
 #include "solver/surfaces/named.hpp"
 #include "solver/surfaces/surface.hpp"
 
@@ -90,6 +92,123 @@ TEST(Surface, DumbbellHasTheCurvaturesOfItsProfile) {
     EXPECT_NEAR(surface.level(y), 0, 1e-15);
     EXPECT_NEAR(surface.mean_curvature(y), 1 / (r * w) - r11 / (w * w * w), 1e-12);
   }
+}
+
+double willmore_residual(const Surface& surface, const Vec3& y) {
+  // kll21 (2.2): V = Delta H + Q, Q = -H³/2 + |A|² H.
+  const double H = surface.mean_curvature(y);
+  return surface.mean_curvature_laplacian(y) - H * H * H / 2 + surface.weingarten(y).squaredNorm() * H;
+}
+
+TEST(MeanCurvatureDerivatives, VanishOnSpheres) {
+  for (double radius : {1.0, 1.7}) {
+    const Surface surface = sphere(radius);
+    for (const Vec3& y : random_points(surface, 50)) {
+      EXPECT_NEAR(surface.mean_curvature_jet(y).value, 2 / radius, 1e-14);
+      EXPECT_LT(surface.mean_curvature_gradient(y).norm(), 1e-14);
+      EXPECT_NEAR(surface.mean_curvature_laplacian(y), 0, 2e-14);
+    }
+  }
+}
+
+TEST(MeanCurvatureDerivatives, HaveTheirClosedFormsOnTheTorus) {
+  const double major = 1, minor = 0.4;
+  const Surface surface = torus(major, minor);
+  for (double theta = 0.1; theta < 6; theta += 0.37) {
+    for (double phi = 0.1; phi < 6; phi += 0.7) {
+      const double c = std::cos(theta), s = std::sin(theta), rho = major + minor * c;
+      const Vec3 y(rho * std::cos(phi), rho * std::sin(phi), minor * s);
+      const Vec3 tangent(-s * std::cos(phi), -s * std::sin(phi), c);
+      // H = 1/r + cos/rho, dH/dtheta = -R sin/rho², and Delta f = (rho f')'/(r² rho).
+      const double slope = -major * s / (rho * rho);
+      const double laplacian = -major * (c * rho + minor * s * s) / (minor * minor * rho * rho * rho);
+      EXPECT_NEAR(surface.mean_curvature_jet(y).value, surface.mean_curvature(y), 1e-13);
+      EXPECT_LT((surface.mean_curvature_gradient(y) - slope / minor * tangent).norm(), 1e-12);
+      EXPECT_NEAR(surface.mean_curvature_laplacian(y), laplacian, 1e-10);
+    }
+  }
+}
+
+TEST(MeanCurvatureDerivatives, TheCliffordTorusIsAWillmoreSurface) {
+  const auto largest_residual = [](const Surface& surface) {
+    double largest = 0;
+    for (const Vec3& y : random_points(surface, 100)) {
+      const double scale = std::pow(surface.mean_curvature(y), 3) + surface.weingarten(y).squaredNorm();
+      largest = std::max(largest, std::abs(willmore_residual(surface, y)) / std::abs(scale));
+    }
+    return largest;
+  };
+  EXPECT_LT(largest_residual(torus(1, std::sqrt(0.5))), 1e-10);
+  EXPECT_GT(largest_residual(torus(1, 0.69)), 1e-3);
+}
+
+TEST(MeanCurvatureDerivatives, AgreeWithTheIndependentImplementation) {
+  const std::string folder = std::string(ESFEM_SOURCE_DIR) + "/reference/independent/";
+  const nlohmann::json reference = read_json(folder + "willmore_assembly.json");
+  const Mesh mesh = read_mesh(folder + "ellipsoid_362.msh").mesh;
+  const Surface surface = ellipsoid(1, 1, 0.6);
+  ASSERT_EQ(reference["exact_u"].size(), size_t(mesh.nodes.rows()));
+  double deviation = 0, without_normal_part = 0;
+  for (int j = 0; j < mesh.nodes.rows(); ++j) {
+    const auto u = reference["exact_u"][j].get<std::vector<double>>();
+    const auto w = reference["exact_w_willmore"][j].get<std::vector<double>>();
+    const double diffusion = reference["exact_w_surface_diffusion"][j][0];
+    const Vec3 y = mesh.nodes.row(j), nu = surface.normal(y), z(w[1], w[2], w[3]);
+    const LevelSetJet H = surface.mean_curvature_jet(y);
+    const auto compare = [&](double found, double expected) {
+      deviation = std::max(deviation, std::abs(found - expected) / (1 + std::abs(expected)));
+    };
+    compare(H.value, u[0]);
+    compare((nu - Vec3(u[1], u[2], u[3])).norm(), 0);
+    compare(willmore_residual(surface, y), w[0]);
+    compare((surface.mean_curvature_gradient(y) - z).norm(), 0);
+    compare(surface.mean_curvature_laplacian(y), diffusion);
+    without_normal_part =
+        std::max(without_normal_part, std::abs(H.hessian.trace() - nu.dot(H.hessian * nu) - diffusion));
+  }
+  EXPECT_LT(deviation, 1e-9);
+  EXPECT_GT(without_normal_part, 1e-3);
+}
+
+TEST(MeanCurvatureDerivatives, DoNotDependOnTheLevelSetFunction) {
+  const auto scaled = [](const auto& x1, const auto& x2, const auto& x3) {
+    return (x1 * x1 + x2 * x2 + x3 * x3 / 0.36 - 1.0) * (2.0 + x1 * x1 + 0.5 * x2 * x3) / (1.0 + x2 * x2);
+  };
+  const auto root = [](const auto& x1, const auto& x2, const auto& x3) {
+    using std::sqrt;
+    return sqrt(x1 * x1 + x2 * x2 + x3 * x3 / 0.36 + 0.3 * x1) - sqrt(1.0 + 0.3 * x1);
+  };
+  const Surface plain = ellipsoid(1, 1, 0.6);
+  const auto normal_part = [](const Surface& surface, const Vec3& y) {
+    return surface.normal(y).dot(surface.mean_curvature_jet(y).gradient);
+  };
+  for (const Surface& other :
+       {make_surface("scaled", scaled, 1, 0.36, 2), make_surface("root", root, 1, 0.36, 2)}) {
+    double extensions_differ = 0;
+    for (const Vec3& y : random_points(plain, 50)) {
+      const double laplacian = plain.mean_curvature_laplacian(y);
+      EXPECT_LT((other.mean_curvature_gradient(y) - plain.mean_curvature_gradient(y)).norm(), 1e-11);
+      EXPECT_NEAR(other.mean_curvature_laplacian(y), laplacian, 1e-11 * (1 + std::abs(laplacian)));
+      extensions_differ =
+          std::max(extensions_differ, std::abs(normal_part(other, y) - normal_part(plain, y)));
+    }
+    EXPECT_GT(extensions_differ, 0.1) << other.name;
+  }
+}
+
+TEST(NestedJets, QuotientsAndRootsHaveTheirFourthDerivatives) {
+  using One = ceres::Jet<double, 1>;
+  using Four = ceres::Jet<ceres::Jet<ceres::Jet<One, 1>, 1>, 1>;
+  const double x = 1.3;
+  Four y = ceres::FromDouble<Four>::make(x);
+  y.v[0] = ceres::FromDouble<ceres::Jet<ceres::Jet<One, 1>, 1>>::make(1.0);
+  y.a.v[0] = ceres::FromDouble<ceres::Jet<One, 1>>::make(1.0);
+  y.a.a.v[0] = One(1.0);
+  y.a.a.a.v[0] = 1;
+  const auto fourth = [](const Four& f) { return f.v[0].v[0].v[0].v[0]; };
+  EXPECT_NEAR(fourth(1.0 / y), 24 * std::pow(x, -5), 1e-12);
+  EXPECT_NEAR(fourth(sqrt(y)), -15.0 / 16 * std::pow(x, -3.5), 1e-12);
+  EXPECT_NEAR(fourth((2.0 - y) / (y * y)), 240 * std::pow(x, -6) - 24 * std::pow(x, -5), 1e-11);
 }
 
 TEST(Surface, StatedBoundsHold) {
