@@ -2,7 +2,8 @@
 // Time of one step of kll19 (5.1), linearly implicit BDF3 on P2 icospheres of radius 2, by phase, and its
 // ratio to a naive step. One row per mesh, N = 2.5k, 10k, 41k, 164k; milliseconds of CPU time of all threads,
 // medians. Then a whole step of the flow, loads included, on the dumbbell of kll19 §13.2 with 10.5k nodes, as
-// a ratio to the two factorisations and solves in it.
+// a ratio to the two factorisations and solves in it; and a step of Willmore flow (kll21) with about 10k and
+// 12k nodes, as a ratio to its factorisation and solves and to a naive one.
 //
 //   bench_step                                   all sizes; the naive step up to N = 41k
 //   bench_step --benchmark_filter=nodes:163842   peak memory of one size alone (column peak_MiB)
@@ -21,6 +22,8 @@
 #include "experiments/harness/library_environment.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/flows/willmore_flow.hpp"
+#include "solver/flows/willmore_terms.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
 #include "solver/mesh/generate.hpp"
 
@@ -183,6 +186,65 @@ void flow_step(benchmark::State& state) {
   state.counters["step_over_factor_solve"] = phases["step"] / phases["factor_solve"];
 }
 
+/// f + F w and g of kll21 (3.5), inputs (H, nu, V, z).
+void willmore_load(const PointData<8>& p, Integrand<8, 4>& load) {
+  load = {};
+  const WillmorePoint at = willmore_point(p, false);
+  add_f(at, load.value, load.flux);
+  add_F(at, p.u + 4, load.value);
+  add_g(at, load.value + 4);
+}
+
+/// A whole step of Willmore flow with extrapolated F, on the ellipsoid with half axes 2, 1, 1, beside its
+/// factorisation and solves and beside the naive one.
+void willmore_step(benchmark::State& state, double edge_length) {
+  const Surface surface = ellipsoid(2, 1, 1);
+  Mesh mesh = lagrange_mesh(generate_mesh(surface, edge_length), 2);
+  project_nodes(mesh, surface);
+  const SurfaceSpace space(mesh);
+  const double step_size = 1e-5, mass_factor = 1.5 / step_size;
+  WillmoreFlow flow(space, {});
+  History<WillmoreFlow::State> history(2);
+  WillmoreFlow::State next = willmore_start_on(space, surface, mesh.nodes, {}, false).state;
+  Field u_w(space.dofs(), 8), loads, u, w;
+  u_w << next.u, next.w;
+  for (int i = 0; i < 2; ++i) {
+    next.t = i * step_size;
+    history.push(next);
+  }
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(mesh.nodes, M, A);
+  BlockSolver block(space.pattern());
+
+  Phases phases;
+  for (auto _ : state) {
+    const double begin = cpu_ms();
+    phases.start();
+    flow.step(history, 2, step_size, next);
+    phases.end("step");
+    space.assemble_load<8, 8, 4>(mesh.nodes, u_w, willmore_load, loads);
+    u = loads.leftCols(4);
+    w = loads.rightCols(4);
+    phases.start();
+    block.factorise(mass_factor, 1, 1, M, A);
+    phases.end("factor");
+    block.solve(u, w);
+    phases.end("solve");
+    state.SetIterationTime((cpu_ms() - begin) / 1e3);
+  }
+  for (int repetition = 0; repetition < 3; ++repetition) {
+    phases.start();
+    const Field naive = naive_willmore_step(mesh, space.quadrature(), u_w, mass_factor);
+    phases.end("naive");
+    if ((naive.leftCols(4) - u).norm() > 1e-6 * u.norm() || (naive.rightCols(4) - w).norm() > 1e-6 * w.norm())
+      throw std::runtime_error("the naive Willmore step gives another solution");
+  }
+  state.counters["nodes"] = space.dofs();
+  for (const char* phase : {"step", "factor", "solve", "naive"}) state.counters[phase] = phases[phase];
+  state.counters["step_over_factor_solve"] = phases["step"] / (phases["factor"] + phases["solve"]);
+  state.counters["naive_over_step"] = phases["naive"] / phases["step"];
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -205,5 +267,12 @@ int main(int argc, char** argv) {
       ->Unit(benchmark::kMillisecond)
       ->UseManualTime()
       ->Iterations(20);
+  for (const double edge_length : {0.1365, 0.1246}) {
+    benchmark::RegisterBenchmark("flow_step/willmore",
+                                 [=](benchmark::State& state) { willmore_step(state, edge_length); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseManualTime()
+        ->Iterations(20);
+  }
   benchmark::RunSpecifiedBenchmarks();
 }

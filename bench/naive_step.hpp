@@ -11,4 +11,9 @@ namespace esfem {
 /// Returns the seven solution columns, v and (nu, H).
 Field naive_step(const Mesh& mesh, const Quadrature& rule, const Field& u, double mass_factor);
 
+/// One solve of the block system of kll21 (3.5), F(x, u) w on the right-hand side, as one writes it first:
+/// element by element, setFromTriplets, and UMFPACK on the 2N x 2N matrix. u_w: (H, nu, V, z), N x 8, also
+/// the columns of the result.
+Field naive_willmore_step(const Mesh& mesh, const Quadrature& rule, const Field& u_w, double mass_factor);
+
 }  // namespace esfem

@@ -48,7 +48,6 @@ class WillmoreFlow {
   /// of (3.7), see willmore_theta; none when it is empty.
   WillmoreFlow(const SurfaceSpace& space, Variant variant, Field theta = {});
   ~WillmoreFlow();
-  WillmoreFlow(WillmoreFlow&&);
 
   /// One step of (3.4)-(3.5) with BDF of order q: fills next.x, next.v, next.u and next.w. Throws
   /// SingularityError where the surface is singular or no longer resolved (regularity.hpp).
@@ -62,7 +61,7 @@ class WillmoreFlow {
   SymmetricMatrix M_, A_;
   BlockSolver block_;
   std::unique_ptr<ImplicitCoupling> implicit_;
-  Field x_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
+  Field x_tilde_, u_tilde_, w_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
 };
 
 /// Start of a run.

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/willmore_flow.hpp"
+
+#include "solver/error.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/flows/regularity.hpp"
+#include "solver/flows/willmore_terms.hpp"
+#include "solver/linalg/gmres.hpp"
+#include "solver/linalg/sparse_cholesky.hpp"
+
+namespace esfem {
+
+namespace {
+
+using Law = WillmoreFlow::Variant::Law;
+
+/// The right-hand sides of (3.5): f(x, u) (+ F(x, u) w) in columns 0-3, g(x, u) in columns 4-7; inputs u, w.
+struct WillmoreLoads {
+  bool surface_diffusion, with_F;
+  double relaxation;
+
+  void operator()(const PointData<8>& p, Integrand<8, 4>& load) const {
+    load = {};
+    const WillmorePoint at = willmore_point(p, surface_diffusion);
+    add_f(at, load.value, load.flux);
+    add_g(at, load.value + 4);
+    if (with_F) add_F(at, p.u + 4, load.value);
+    if (relaxation > 0) add_relaxation(at, relaxation, p.normal, load.value, load.flux);
+  }
+};
+
+/// v = V nu in the nodes (3.4b).
+Field interpolated_velocity(const Field& u, const Field& w) {
+  return w.col(0).asDiagonal() * u.rightCols(3);
+}
+
+/// nu_h to unit length and z_h to the plane normal to it, node by node (§7.1).
+void project(Field& u, Field& w) {
+  for (int j = 0; j < u.rows(); ++j) {
+    const Vec3 nu = u.row(j).tail<3>().normalized(), z = w.row(j).tail<3>();
+    u.row(j).tail<3>() = nu;
+    w.row(j).tail<3>() = z - z.dot(nu) * nu;
+  }
+}
+
+/// A u - g(x, u), the left-hand side of (3.5b) without M w.
+Field constraint(const SurfaceSpace& space, const SymmetricMatrix& A, const Field& x, const Field& u,
+                 Law law) {
+  const auto g = [law](const PointData<4>& p, Integrand<4, 0>& load) {
+    for (Pack& value : load.value) value = Pack{};
+    add_g(willmore_point(p, law == Law::surface_diffusion), load.value);
+  };
+  Field load;
+  space.assemble_load<4, 4, 0>(x, u, g, load);
+  return A * u - load;
+}
+
+}  // namespace
+
+/// F(x~, u~) w^n of the variant `implicit`. With S the solution of the block system, (u, w) = S(r + F w, s),
+/// w solves w - S_w(F w, 0) = S_w(r, s), by GMRES on the factors that are there.
+struct WillmoreFlow::ImplicitCoupling {
+  static constexpr double tolerance = 1e-12;
+  static constexpr int most_iterations = 100;
+
+  Field input, image, zero;
+  Eigen::VectorXd w, rhs;
+
+  /// image = F(x, u) w; the first four columns of `input` are u.
+  void apply_F(const SurfaceSpace& space, const Field& x, Eigen::Map<const Field> w_now) {
+    const auto F = [](const PointData<8>& p, Integrand<4, 0>& load) {
+      for (Pack& value : load.value) value = Pack{};
+      add_F(willmore_point(p, true), p.u + 4, load.value);
+    };
+    input.rightCols(4) = w_now;
+    space.assemble_load<8, 4, 0>(x, input, F, image);
+  }
+
+  /// Replaces r, s by u, w. u_w: u~ and a guess of w.
+  void solve(const SurfaceSpace& space, const Field& x, const Field& u_w, BlockSolver& block, Field& r,
+             Field& s) {
+    const Eigen::Index n = r.rows();
+    input = u_w;
+    w = Eigen::Map<const Eigen::VectorXd>(u_w.col(4).data(), 4 * n);
+    Field u_explicit = r, w_explicit = s;
+    block.solve(u_explicit, w_explicit);
+    rhs = Eigen::Map<const Eigen::VectorXd>(w_explicit.data(), 4 * n);
+    const LinearMap map = [&](const Eigen::VectorXd& from, Eigen::VectorXd& to) {
+      apply_F(space, x, {from.data(), n, 4});
+      zero.setZero(n, 4);
+      block.solve(image, zero);
+      to = from - Eigen::Map<const Eigen::VectorXd>(zero.data(), 4 * n);
+    };
+    solve_gmres(map, rhs, tolerance, most_iterations, w);
+    apply_F(space, x, {w.data(), n, 4});
+    r += image;
+    block.solve(r, s);
+  }
+};
+
+WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field theta)
+    : space_(space),
+      variant_(variant),
+      theta_(std::move(theta)),
+      M_(space.matrix()),
+      A_(space.matrix()),
+      block_(space.pattern()) {
+  if (!(variant.relaxation >= 0))
+    throw InputError(format("relaxation: found %g, expected a number >= 0", variant.relaxation));
+  if (variant.F == Variant::implicit) implicit_ = std::make_unique<ImplicitCoupling>();
+}
+
+WillmoreFlow::~WillmoreFlow() = default;
+
+void WillmoreFlow::step(const History<State>& history, int q, double tau, State& next) {
+  const double delta_0 = history.delta(q)[0];
+
+  history.extrapolate(q, &State::x, x_tilde_);
+  history.extrapolate(q, &State::u, u_tilde_);
+  history.extrapolate(q, &State::w, w_tilde_);
+  u_w_tilde_.resize(u_tilde_.rows(), 8);
+  u_w_tilde_ << u_tilde_, w_tilde_;
+
+  // f(x~, u~) (+ F(x~, u~) w~) and g(x~, u~)
+  assemble_regular(space_, x_tilde_, M_, A_);
+  const WillmoreLoads loads{variant_.law == Variant::surface_diffusion, variant_.F == Variant::extrapolated,
+                            variant_.relaxation};
+  space_.assemble_load<8, 8, 4>(x_tilde_, u_w_tilde_, loads, loads_);
+
+  // (3.5a): delta_0/tau M u - A w = F w + f - M 1/tau sum_{j>=1} delta_j u^{n-j};  (3.7): A u + M w = g +
+  // theta
+  history.bdf_sum(q, &State::u, sum_);
+  M_.multiply(sum_, M_sum_);
+  next.u = loads_.leftCols(4) - M_sum_ / tau;
+  next.w = loads_.rightCols(4);
+  if (theta_.size() > 0) next.w += theta_;
+  block_.factorise(delta_0 / tau, 1.0, 1.0, M_, A_);
+  if (implicit_)
+    implicit_->solve(space_, x_tilde_, u_w_tilde_, block_, next.u, next.w);
+  else
+    block_.solve(next.u, next.w);
+  if (variant_.project) project(next.u, next.w);
+
+  // (3.4): v = V nu, delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
+  next.v = interpolated_velocity(next.u, next.w);
+  history.bdf_sum(q, &State::x, sum_);
+  next.x = (tau * next.v - sum_) / delta_0;
+  require_regular(space_, next.x, next.u.col(0));
+  require_normal(next.u.rightCols(3));
+}
+
+namespace {
+
+/// The state with given nodes and u = (H, nu) and, where it is given, w; otherwise w from (3.5b).
+WillmoreStart start_from(const SurfaceSpace& space, const Field& x, Field u, Field exact_w, Law law) {
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(x, M, A);
+  const Field rest = constraint(space, A, x, u, law);
+  WillmoreStart start;
+  if (exact_w.size() > 0) {
+    start.theta = M * exact_w + rest;
+    start.state.w = std::move(exact_w);
+  } else {
+    SparseCholesky cholesky(space.pattern());
+    cholesky.factorise(1.0, M, 0.0, A);
+    start.state.w = -rest;
+    cholesky.solve(start.state.w);
+  }
+  start.state.x = x;
+  start.state.v = interpolated_velocity(u, start.state.w);
+  start.state.u = std::move(u);
+  return start;
+}
+
+}  // namespace
+
+WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x, Law law,
+                                bool with_theta) {
+  Field u(x.rows(), 4), w;
+  if (with_theta) w.resize(x.rows(), 4);
+  for (int j = 0; j < x.rows(); ++j) {
+    const Vec3 y = x.row(j);
+    const Surface::Shape shape = surface.shape_at(y);
+    const double H = shape.weingarten.trace(), A_squared = shape.weingarten.squaredNorm();
+    u.row(j) << H, shape.normal.transpose();
+    if (!with_theta) continue;
+    const double Q = law == Law::willmore ? H * (A_squared - H * H / 2) : 0;
+    w.row(j) << surface.mean_curvature_laplacian(y) + Q, surface.mean_curvature_gradient(y).transpose();
+  }
+  return start_from(space, x, std::move(u), std::move(w), law);
+}
+
+WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, Law law) {
+  const MeanCurvatureFlow::State curvature = discrete_mean_curvature_state(space, x);
+  Field u(x.rows(), 4);
+  u << curvature.u.col(3), curvature.u.leftCols(3);
+  return start_from(space, x, std::move(u), {}, law);
+}
+
+std::vector<PointField> point_fields(const WillmoreFlow::State& state) {
+  return {{"v", state.v},
+          {"nu", state.u.rightCols(3)},
+          {"H", state.u.col(0)},
+          {"V", state.w.col(0)},
+          {"z", state.w.rightCols(3)}};
+}
+
+Field table_columns(const WillmoreFlow::State& state) {
+  Field columns(state.x.rows(), 7);
+  columns << state.x, state.u.rightCols(3), state.u.col(0);
+  return columns;
+}
+
+}  // namespace esfem
