@@ -149,20 +149,11 @@ Mesh mesh_of(const Setting& setting, const Run& run) {
 template <class Flow>
 std::string run_flow(Flow flow, const typename Flow::State& initial, const TimeGrid& grid,
                      RunRecorder& recorder) {
-  std::string status = "ok";
-  try {
-    integrate(flow, grid, initial, {}, [&](int n, const typename Flow::State& state) {
-      recorder.record(n, state.t, state.x, point_fields(state));
-      record_profile(state.x, recorder.series());
-    });
-  } catch (const SingularityError& singularity) {
-    status = singularity.what();
-  } catch (const NumericsError& error) {
-    if (recorder.empty()) throw;
-    status = std::string("failed: ") + error.what();
-  }
-  recorder.finish();
-  return status;
+  const auto record = [&](int n, const typename Flow::State& state) {
+    recorder.record(n, state.t, state.x, point_fields(state));
+    record_profile(state.x, recorder.series());
+  };
+  return run_to_end([&] { integrate(flow, grid, initial, {}, record); }, recorder);
 }
 
 MeanCurvatureFlow::Variant variant_of(const std::string& method) {

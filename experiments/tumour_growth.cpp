@@ -23,6 +23,7 @@
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
 #include "experiments/harness/method_options.hpp"
+#include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/mesh.hpp"
 

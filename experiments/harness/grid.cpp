@@ -72,6 +72,20 @@ SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>&
   return {folder.empty() ? "" : folder + "/surfaces.pvd", times, 0};
 }
 
+std::string run_to_end(const std::function<void()>& integrate, RunRecorder& recorder) {
+  std::string status = "ok";
+  try {
+    integrate();
+  } catch (const SingularityError& singularity) {
+    status = singularity.what();
+  } catch (const NumericsError& error) {
+    if (recorder.empty()) throw;
+    status = std::string("failed: ") + error.what();
+  }
+  recorder.finish();
+  return status;
+}
+
 void describe_run(RunRecorder& recorder, Row& row) {
   row.series = recorder.series();
   for (const RunRecorder::Snapshot& snapshot : recorder.snapshots())

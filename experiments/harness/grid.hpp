@@ -56,6 +56,11 @@ void describe_mesh(const Mesh& mesh, Row& row);
 /// Snapshots at the given times as surfaces.pvd in the folder of a run; none without folder.
 SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>& times);
 
+/// Integrates a flow whose steps are recorded, and finishes the recorder. Returns the status of the row:
+/// "ok", or why the run ended before its time. A NumericsError of a run without any recorded step passes
+/// through.
+std::string run_to_end(const std::function<void()>& integrate, RunRecorder& recorder);
+
 /// Fills in the series, and the list "snapshots" of {"t", "file"} when there are some.
 void describe_run(RunRecorder& recorder, Row& row);
 
