@@ -27,7 +27,8 @@
 #include <cmath>
 
 #include "experiments/harness/experiment.hpp"
-#include "experiments/harness/warn.hpp"
+#include "experiments/harness/grid.hpp"
+#include "experiments/harness/method_options.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/growing_sphere.hpp"
@@ -38,18 +39,9 @@ namespace {
 using namespace esfem;
 using State = CoupledDiffusionState;
 
-const double end_time = 1, largest_tau = 0.1, largest_h = 0.38;
+const double largest_h = 0.38;
+const HalvedSteps time_steps{1, 0.1};
 const int reference_k = 7;  ///< step size of the solution that the orders of BDF 1 to 5 are measured against
-
-double step_size(int k) {
-  return largest_tau * std::pow(2.0, -k);
-}
-int step_count(int k) {
-  return static_cast<int>(std::lround(end_time / step_size(k)));
-}
-double edge_length(int level) {
-  return largest_h * std::pow(2.0, -0.5 * level);
-}
 
 /// The kinds of runs, as --runs names them and as rows are labelled.
 const std::vector<std::string> known_runs = {"convergence", "quotient", "none",
@@ -110,39 +102,20 @@ Setting resolve(const Options& options, const OwnOptions& own) {
   setting.degree = options.degree.value_or(2);
   setting.start = options.start.value_or(Start{});
   setting.meshes = options.meshes;
-  setting.rule =
-      own.quadrature.empty() ? default_quadrature(setting.degree) : parse_quadrature(own.quadrature);
+  setting.rule = quadrature_or_default(own.quadrature, setting.degree);
   const bool as_in_the_preset =
       !options.levels && !options.steps && !options.bdf && options.meshes.empty() && own.runs.empty();
   if (as_in_the_preset) {
     setting.runs = preset_runs(options.preset);
     return setting;
   }
-  std::vector<int> levels = {0};
-  for (int i = 1; i < static_cast<int>(options.meshes.size()); ++i) levels.push_back(i);
-  levels = options.levels.value_or(levels);
-  for (int level : levels) {
-    if (!options.meshes.empty() && level >= static_cast<int>(options.meshes.size())) {
-      throw InputError(format("--levels: found %d, expected less than %zu, the number of --mesh files", level,
-                              options.meshes.size()));
-    }
-  }
+  const std::vector<int> levels = mesh_levels(options, {0});
   const std::vector<std::string> kinds =
       own.runs.empty() ? std::vector<std::string>{"convergence"} : own.runs;
   for (const std::string& kind : kinds) {
-    add_runs(kind, {options.bdf.value_or(3)}, levels, options.steps.value_or(std::vector<int>{1, 2, 3, 4}),
-             setting.runs);
+    add_runs(kind, {options.bdf.value_or(3)}, levels, options.steps.value_or(range(1, 4)), setting.runs);
   }
   return setting;
-}
-
-Mesh initial_mesh(const Setting& setting, int level) {
-  const Surface surface = sphere(1);
-  Mesh mesh = setting.meshes.empty() ? generate_mesh(surface, edge_length(level))
-                                     : mesh_from_file(setting.meshes[level]);
-  mesh = lagrange_mesh(mesh, setting.degree);
-  project_nodes(mesh, surface);
-  return mesh;
 }
 
 /// The growing sphere on one mesh.
@@ -187,7 +160,7 @@ struct GrowingSphereRuns {
 /// Nodal norms of a difference on the exact nodes at the end.
 std::map<std::string, double> nodal_errors(const GrowingSphereRuns& runs, const Field& e) {
   SymmetricMatrix M = runs.space.matrix(), A = runs.space.matrix();
-  runs.space.assemble(runs.exact.trajectories(runs.x0, end_time), M, A);
+  runs.space.assemble(runs.exact.trajectories(runs.x0, time_steps.end_time), M, A);
   const SquaredNorms norms = nodal_norms(M, A, e);
   const double L2 = norms.L2.sum(), H1_semi = norms.H1_semi.sum();
   return {{"nodal_L2", std::sqrt(L2)},
@@ -215,7 +188,8 @@ void run_difference(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& ro
 /// Errors against the solution of the same discretisation in space, by BDF5 and small steps. It gives the
 /// starting values, too: exact ones are off it by the error in space, and how far is a matter of tau.
 void run_order(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
-  const TimeGrid small{5, step_size(reference_k), step_count(reference_k), parse_start("substeps:128")};
+  const TimeGrid small{5, time_steps.tau(reference_k), time_steps.count(reference_k),
+                       parse_start("substeps:128")};
   const int ratio = small.steps / grid.steps;
   std::vector<State> reference;  // at the steps 0, .., q - 1 of the grid, and at the end
   runs.run(small, {}, GrowingSphereProblem::additive, {}, [&](int n, const State& state) {
@@ -236,7 +210,7 @@ void run_convergence(const GrowingSphereRuns& runs, const std::string& kind, con
                                            : GrowingSphereProblem::additive;
   const State end = runs.end_of(grid, variant, coupling);
   ErrorRecorder errors(runs.space, runs.exact, runs.x0);
-  errors.record(end_time, table_columns(end));
+  errors.record(time_steps.end_time, table_columns(end));
   row.errors = errors.maxima();
   row.series = errors.series();
 }
@@ -245,17 +219,13 @@ nlohmann::json labels(const Run& run) {
   return {{"run", run.kind}, {"bdf", std::to_string(run.bdf)}};
 }
 
-Row run_cell(const Setting& setting, const Run& run) {
+Row run_cell(const Setting& setting, const Run& run, Row row) {
   // 1. The initial surface and the finite element space on it.
-  const Mesh mesh = initial_mesh(setting, run.level);
+  const Surface surface = sphere(1);
+  const auto generate = [&] { return generate_mesh(surface, edge_length(largest_h, run.level)); };
+  const Mesh mesh = initial_mesh(setting.meshes, run.level, generate, surface, setting.degree);
   const SurfaceSpace space(mesh, setting.rule);
-  Row row;
-  row.level = run.level;
-  row.h = mesh_quality(mesh.elements, mesh.nodes).h;
-  row.nodes = space.dofs();
-  row.tau = step_size(run.k);
-  row.steps = step_count(run.k);
-  row.more = labels(run);
+  describe_mesh(mesh, row);
 
   // 2. The time steps, and the errors at their end.
   const GrowingSphereRuns runs{space, mesh.nodes};
@@ -281,40 +251,34 @@ std::string cell_name(const Run& run) {
 
 /// Seconds on one core: a step takes about 2.5 microseconds a node.
 double estimated_cost(const Setting& setting, const Run& run) {
-  const double vertices = 27.5 / std::pow(edge_length(run.level), 2);
+  const double vertices = 27.5 / std::pow(edge_length(largest_h, run.level), 2);
   const double nodes = vertices * setting.degree * setting.degree;
-  double steps = step_count(run.k);
+  double steps = time_steps.count(run.k);
   if (run.kind == "difference") steps *= 2.2;
-  if (run.kind == "order") steps += step_count(reference_k);
+  if (run.kind == "order") steps += time_steps.count(reference_k);
   return 0.1 + vertices * 2e-4 + nodes * steps * 2.5e-6;
 }
 
 std::vector<Cell> cells(const Setting& setting) {
   std::vector<Cell> list;
   for (const Run& run : setting.runs) {
-    Cell cell{cell_name(run), estimated_cost(setting, run),
-              [=](const std::string&) { return run_cell(setting, run); }};
-    cell.planned.level = run.level;
-    cell.planned.tau = step_size(run.k);
-    cell.planned.steps = step_count(run.k);
-    cell.planned.more = labels(run);
-    list.push_back(cell);
+    list.push_back({cell_name(run), estimated_cost(setting, run),
+                    [=](const Row& row, const std::string&) { return run_cell(setting, run, row); },
+                    planned_row(run.level, time_steps, run.k, labels(run))});
   }
   return list;
 }
 
 nlohmann::json parameters(const Setting& setting, const std::string& preset) {
-  nlohmann::json meshes = setting.meshes;
-  if (setting.meshes.empty()) meshes = "generated, edge length 0.38 2^(-level/2)";
   return {{"preset", preset},
-          {"end_time", end_time},
+          {"end_time", time_steps.end_time},
           {"alpha", 1},
           {"beta", 1},
           {"degree", setting.degree},
           {"start", to_string(setting.start)},
           {"quadrature", setting.rule.name},
           {"errors", "at the end time"},
-          {"meshes", meshes}};
+          {"meshes", mesh_parameter(setting.meshes, "generated, edge length 0.38 2^(-level/2)")}};
 }
 
 }  // namespace
@@ -335,19 +299,13 @@ int main(int argc, char** argv) {
       "not given convergence, BDF3, level 0, k = 1..4.\n\n"
       "Example: coupled_diffusion --runs convergence --levels 0-2 --steps 1-4 --output table.json";
   experiment.add_options = [&](CLI::App& app) {
-    const std::string group = "Method (not given: as in the preset)";
-    app.add_option("--runs", own.runs,
-                   "convergence: (2.19) with g coupled additively | quotient: as printed | none: not coupled "
-                   "| difference: "
-                   "(7.2) minus (2.19) | dynamic: dynamic velocity law | order: errors against small steps")
-        ->check(CLI::IsMember(known_runs))
-        ->delimiter(',')
-        ->type_name("LIST")
-        ->group(group);
-    app.add_option("--quadrature", own.quadrature,
-                   "rule on each element: conical:N (N x N Gauss points) | degree:D (symmetric)")
-        ->type_name("RULE")
-        ->group(group);
+    add_names_option(
+        app, "--runs", known_runs,
+        "convergence: (2.19) with g coupled additively | quotient: as printed | none: not coupled "
+        "| difference: "
+        "(7.2) minus (2.19) | dynamic: dynamic velocity law | order: errors against small steps",
+        own.runs);
+    add_quadrature_option(app, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

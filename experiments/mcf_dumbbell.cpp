@@ -26,6 +26,8 @@
 #include <optional>
 
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/grid.hpp"
+#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
@@ -38,18 +40,11 @@ namespace {
 
 using namespace esfem;
 
-const double end_time = 0.12, largest_tau = 0.003;
+const HalvedSteps time_steps{0.12, 0.003};
 const std::vector<double> snapshot_times = {0.03, 0.06, 0.072};
 
 const std::vector<std::string> known_methods = {
     "dziuk", "kll", "kll_normalised", "kll_alpha1", "kll_alpha10", "kll_alpha100", "bgn", "bgn_p1"};
-
-double step_size(int k) {
-  return largest_tau * std::pow(2.0, -k);
-}
-int step_count(int k) {
-  return static_cast<int>(std::lround(end_time / step_size(k)));
-}
 
 bool starts_with(const std::string& text, const std::string& beginning) {
   return text.compare(0, beginning.size(), beginning) == 0;
@@ -117,16 +112,8 @@ Setting resolve(const Options& options, const std::vector<std::string>& methods)
     setting.runs = preset_runs(options.preset);
     return setting;
   }
-  std::vector<int> levels = {0};
-  for (int i = 1; i < static_cast<int>(options.meshes.size()); ++i) levels.push_back(i);
-  levels = options.levels.value_or(levels);
-  const int level_count = options.meshes.empty() ? 2 : static_cast<int>(options.meshes.size());
-  for (int level : levels) {
-    if (level >= level_count) {
-      throw InputError(format("--levels: found %d, expected less than %d, the number of %s", level,
-                              level_count, options.meshes.empty() ? "levels" : "--mesh files"));
-    }
-  }
+  const std::vector<int> levels = mesh_levels(options, {0});
+  if (options.meshes.empty()) require_levels(levels, 2, "levels");
   const Start start = options.start.value_or(parse_start("substeps:16"));
   if (start.kind == Start::exact) {
     throw InputError(
@@ -149,32 +136,24 @@ Mesh corner_mesh_of_level(int level) {
   });
 }
 
-Mesh initial_mesh(const Setting& setting, const Run& run) {
-  Mesh mesh =
-      setting.meshes.empty() ? corner_mesh_of_level(run.level) : mesh_from_file(setting.meshes[run.level]);
-  mesh = run.method == "bgn_p1" ? subdivide(mesh) : lagrange_mesh(mesh, setting.degree);
-  project_nodes(mesh, dumbbell());
-  return mesh;
+/// For bgn_p1, linear elements between the nodes of quadratic ones.
+Mesh mesh_of(const Setting& setting, const Run& run) {
+  const bool linear = run.method == "bgn_p1";
+  const auto generate = [&] { return corner_mesh_of_level(run.level); };
+  const Mesh mesh =
+      initial_mesh(setting.meshes, run.level, generate, dumbbell(), linear ? 2 : setting.degree);
+  return linear ? subdivide(mesh) : mesh;
 }
 
 /// Runs a flow until its end, or until it is singular or fails; returns the status of the row.
 template <class Flow>
 std::string run_flow(Flow flow, const typename Flow::State& initial, const TimeGrid& grid,
                      RunRecorder& recorder) {
-  std::string status = "ok";
-  try {
-    integrate(flow, grid, initial, {}, [&](int n, const typename Flow::State& state) {
-      recorder.record(n, state.t, state.x, point_fields(state));
-      record_profile(state.x, recorder.series());
-    });
-  } catch (const SingularityError& singularity) {
-    status = singularity.what();
-  } catch (const NumericsError& error) {
-    if (recorder.empty()) throw;
-    status = std::string("failed: ") + error.what();
-  }
-  recorder.finish();
-  return status;
+  const auto record = [&](int n, const typename Flow::State& state) {
+    recorder.record(n, state.t, state.x, point_fields(state));
+    record_profile(state.x, recorder.series());
+  };
+  return run_to_end([&] { integrate(flow, grid, initial, {}, record); }, recorder);
 }
 
 MeanCurvatureFlow::Variant variant_of(const std::string& method) {
@@ -221,18 +200,17 @@ nlohmann::json labels(const Run& run) {
   return {{"method", run.method}, {"start", has_start(run.method) ? to_string(run.start) : "none"}};
 }
 
-Row run_cell(const Setting& setting, const Run& run, const std::string& folder) {
+Row run_cell(const Setting& setting, const Run& run, Row row, const std::string& folder) {
   // 1. The initial surface and the finite element space on it.
-  const Mesh mesh = initial_mesh(setting, run);
+  const Mesh mesh = mesh_of(setting, run);
   const SurfaceSpace space(mesh,
                            run.method == "bgn_p1" ? vertex_quadrature() : default_quadrature(mesh.degree));
+  describe_mesh(mesh, row);
 
   // 2. The time steps, until the end or the singularity.
   const bool bgn = !has_start(run.method);
-  const TimeGrid grid{bgn ? 1 : setting.bdf, step_size(run.k), step_count(run.k), run.start};
-  RunRecorder recorder(space, {folder.empty() ? "" : folder + "/surfaces.pvd", snapshot_times, 0});
-  Row row;
-  row.more = labels(run);
+  const TimeGrid grid{bgn ? 1 : setting.bdf, row.tau, row.steps, run.start};
+  RunRecorder recorder(space, snapshot_plan(folder, snapshot_times));
   if (bgn) {
     row.status = run_flow(BgnFlow(space), bgn_state_on(space, mesh.nodes), grid, recorder);
   } else if (run.method == "dziuk") {
@@ -244,16 +222,8 @@ Row run_cell(const Setting& setting, const Run& run, const std::string& folder) 
   }
 
   // 3. The row of the table.
-  row.level = run.level;
-  row.h = mesh_quality(mesh.elements, mesh.nodes).h;
-  row.nodes = space.dofs();
-  row.tau = grid.tau;
-  row.steps = grid.steps;
-  row.values = values(recorder.series());
-  row.series = recorder.series();
-  for (const RunRecorder::Snapshot& snapshot : recorder.snapshots()) {
-    row.more["snapshots"].push_back({{"t", snapshot.t}, {"file", snapshot.file}});
-  }
+  describe_run(recorder, row);
+  row.values = values(row.series);
   return row;
 }
 
@@ -267,31 +237,30 @@ std::string cell_name(const Run& run) {
 /// one of BGN's scheme 60.
 double estimated_cost(const Run& run) {
   const double nodes = run.level == 1 ? 10522 : 3000;
-  const double steps = 0.083 / step_size(run.k);
+  const double steps = 0.083 / time_steps.tau(run.k);
   return 1 + nodes * steps * (!has_start(run.method) ? 60e-6 : 5e-6);
 }
 
 std::vector<Cell> cells(const Setting& setting) {
   std::vector<Cell> list;
   for (const Run& run : setting.runs) {
-    Cell cell{cell_name(run), estimated_cost(run),
-              [=](const std::string& folder) { return run_cell(setting, run, folder); }};
-    cell.planned.level = run.level;
-    cell.planned.tau = step_size(run.k);
-    cell.planned.steps = step_count(run.k);
-    cell.planned.more = labels(run);
-    list.push_back(cell);
+    list.push_back(
+        {cell_name(run), estimated_cost(run),
+         [=](const Row& row, const std::string& folder) { return run_cell(setting, run, row, folder); },
+         planned_row(run.level, time_steps, run.k, labels(run))});
   }
   return list;
 }
 
 nlohmann::json parameters(const Setting& setting, const std::string& preset) {
-  nlohmann::json meshes = setting.meshes;
-  if (setting.meshes.empty()) {
-    meshes = "generated, level 0: edge length (0.2^-2 + kappa_1² + kappa_2²)^(-1/2), level 1: 0.0902";
-  }
-  return {{"preset", preset},   {"end_time", end_time}, {"degree", setting.degree},
-          {"bdf", setting.bdf}, {"meshes", meshes},     {"largest_tau", largest_tau}};
+  const char* generated =
+      "generated, level 0: edge length (0.2^-2 + kappa_1² + kappa_2²)^(-1/2), level 1: 0.0902";
+  return {{"preset", preset},
+          {"end_time", time_steps.end_time},
+          {"degree", setting.degree},
+          {"bdf", setting.bdf},
+          {"meshes", mesh_parameter(setting.meshes, generated)},
+          {"largest_tau", time_steps.largest}};
 }
 
 }  // namespace
@@ -313,14 +282,11 @@ int main(int argc, char** argv) {
       "With --output FILE.json the surfaces go to cells/mcf_dumbbell/CELL/surfaces.pvd beside it.\n\n"
       "Example: mcf_dumbbell --methods kll_normalised --levels 1 --steps 2 --output dumbbell.json";
   experiment.add_options = [&](CLI::App& app) {
-    app.add_option("--methods", methods,
-                   "dziuk: (3.6) | kll: (5.1) | kll_normalised | kll_alpha1, 10, 100: with the stabilising "
-                   "term of §14 | "
-                   "bgn, bgn_p1: Barrett, Garcke, Nürnberg 2008, BDF1, P1: on triangles cut into four")
-        ->check(CLI::IsMember(known_methods))
-        ->delimiter(',')
-        ->type_name("LIST")
-        ->group("Method (not given: as in the preset)");
+    add_names_option(app, "--methods", known_methods,
+                     "dziuk: (3.6) | kll: (5.1) | kll_normalised | kll_alpha1, 10, 100: with the stabilising "
+                     "term of §14 | "
+                     "bgn, bgn_p1: Barrett, Garcke, Nürnberg 2008, BDF1, P1: on triangles cut into four",
+                     methods);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, methods)); };
   experiment.parameters = [&](const Options& options) {

@@ -22,9 +22,10 @@
 #include <cmath>
 
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/grid.hpp"
+#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/errors.hpp"
-#include "solver/error.hpp"
 #include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/exact_evolution.hpp"
@@ -35,17 +36,8 @@ namespace {
 
 using namespace esfem;
 
-const double initial_radius = 2, end_time = 0.6, largest_tau = 0.2, largest_h = 0.5;
-
-double step_size(int k) {
-  return largest_tau * std::pow(2.0, -k);
-}
-int step_count(int k) {
-  return static_cast<int>(std::lround(end_time / step_size(k)));
-}
-double edge_length(int level) {
-  return largest_h * std::pow(2.0, -0.5 * level);
-}
+const double initial_radius = 2, largest_h = 0.5;
+const HalvedSteps time_steps{0.6, 0.2};
 
 /// What the command line says, with the preset's values where it says nothing.
 struct Setting {
@@ -64,45 +56,21 @@ struct OwnOptions {
   std::vector<std::string> flows = known_flows;
 };
 
-std::vector<int> range(int first, int last) {
-  std::vector<int> list;
-  for (int i = first; i <= last; ++i) list.push_back(i);
-  return list;
-}
-
 Setting resolve(const Options& options, const OwnOptions& own) {
   const bool paper = options.preset == "paper";
   Setting setting;
   setting.degree = options.degree.value_or(2);
   setting.bdf = options.bdf.value_or(3);
   setting.meshes = options.meshes;
-  const int meshes = static_cast<int>(setting.meshes.size());
-  setting.levels = options.levels.value_or(meshes ? range(0, meshes - 1) : paper ? range(0, 4) : range(0, 2));
+  setting.rule = quadrature_or_default(own.quadrature, setting.degree);
+  setting.levels = mesh_levels(options, paper ? range(0, 4) : range(0, 2));
   setting.dziuk_levels = setting.levels;
   // The published run leaves out the dearest mesh: it shows nothing that the others do not.
-  if (paper && !options.levels && !meshes) setting.dziuk_levels.pop_back();
+  if (paper && !options.levels && options.meshes.empty()) setting.dziuk_levels.pop_back();
   setting.steps = options.steps.value_or(paper ? range(0, 7) : range(2, 6));
   setting.start = options.start.value_or(Start{});
-  setting.rule =
-      own.quadrature.empty() ? default_quadrature(setting.degree) : parse_quadrature(own.quadrature);
   setting.flows = own.flows;
-  for (int level : setting.levels) {
-    if (meshes && level >= meshes) {
-      throw InputError(
-          format("--levels: found %d, expected less than %d, the number of --mesh files", level, meshes));
-    }
-  }
   return setting;
-}
-
-/// The initial triangulation of the sphere with curved elements.
-Mesh initial_mesh(const Setting& setting, int level) {
-  const Surface surface = sphere(initial_radius);
-  Mesh mesh = setting.meshes.empty() ? generate_mesh(surface, edge_length(level))
-                                     : mesh_from_file(setting.meshes[level]);
-  mesh = lagrange_mesh(mesh, setting.degree);
-  project_nodes(mesh, surface);
-  return mesh;
 }
 
 /// x, v, nu, H side by side, the columns of the error tables.
@@ -126,17 +94,20 @@ void run_flow(Flow flow, const SurfaceSpace& space, const TimeGrid& grid, const 
             [&](int, const State& state) { errors.record(state.t, columns(state, curvature)); });
 }
 
-Row run(const Setting& setting, const std::string& flow, int level, int k) {
+Row run(const Setting& setting, const std::string& flow, Row row) {
   // 1. The initial surface and the finite element space on it.
-  const Mesh mesh = initial_mesh(setting, level);
+  const Surface surface = sphere(initial_radius);
+  const auto generate = [&] { return generate_mesh(surface, edge_length(largest_h, row.level)); };
+  const Mesh mesh = initial_mesh(setting.meshes, row.level, generate, surface, setting.degree);
   const SurfaceSpace space(mesh, setting.rule);
+  describe_mesh(mesh, row);
 
   // 2. The exact solution: starting values and what the errors are measured against.
   const ExactEvolution exact = shrinking_sphere(initial_radius);
   ErrorRecorder errors(space, exact, mesh.nodes);
 
   // 3. The time steps, with the errors of each.
-  const TimeGrid grid{setting.bdf, step_size(k), step_count(k), setting.start};
+  const TimeGrid grid{setting.bdf, row.tau, row.steps, setting.start};
   if (flow == "dziuk") {
     warn(dziuk_warning(grid.order));
     const auto state = [&](double t) { return exact_dziuk_state(exact, mesh.nodes, t); };
@@ -147,24 +118,17 @@ Row run(const Setting& setting, const std::string& flow, int level, int k) {
   }
 
   // 4. The row of the table.
-  Row row;
-  row.level = level;
-  row.h = mesh_quality(mesh.elements, mesh.nodes).h;
-  row.nodes = space.dofs();
-  row.tau = grid.tau;
-  row.steps = grid.steps;
   row.errors = errors.maxima();
   row.series = errors.series();
-  row.more["flow"] = flow;
   return row;
 }
 
 /// Seconds on one core: a step with its errors takes about 9 microseconds a P2 node, a mesh about 0.2 ms a
 /// vertex.
 double estimated_cost(const Setting& setting, int level, int k) {
-  const double vertices = 110.0 / std::pow(edge_length(level), 2);
+  const double vertices = 110.0 / std::pow(edge_length(largest_h, level), 2);
   const double nodes = vertices * setting.degree * setting.degree;
-  return vertices * 2e-4 + nodes * step_count(k) * 9e-6;
+  return vertices * 2e-4 + nodes * time_steps.count(k) * 9e-6;
 }
 
 std::vector<Cell> cells(const Setting& setting) {
@@ -173,13 +137,9 @@ std::vector<Cell> cells(const Setting& setting) {
     const std::string prefix = flow == "dziuk" ? "dziuk_" : "";
     for (int level : flow == "dziuk" ? setting.dziuk_levels : setting.levels) {
       for (int k : setting.steps) {
-        Cell cell{format("%sh%d_tau%d", prefix.c_str(), level, k), estimated_cost(setting, level, k),
-                  [=](const std::string&) { return run(setting, flow, level, k); }};
-        cell.planned.level = level;
-        cell.planned.tau = step_size(k);
-        cell.planned.steps = step_count(k);
-        cell.planned.more["flow"] = flow;
-        list.push_back(cell);
+        list.push_back({format("%sh%d_tau%d", prefix.c_str(), level, k), estimated_cost(setting, level, k),
+                        [=](const Row& row, const std::string&) { return run(setting, flow, row); },
+                        planned_row(level, time_steps, k, {{"flow", flow}})});
       }
     }
   }
@@ -187,18 +147,14 @@ std::vector<Cell> cells(const Setting& setting) {
 }
 
 nlohmann::json parameters(const Setting& setting, const std::string& preset) {
-  nlohmann::json meshes = setting.meshes;
-  if (setting.meshes.empty()) {
-    meshes = "generated, edge length 0.5 2^(-level/2)";
-  }
   return {{"preset", preset},
           {"initial_radius", initial_radius},
-          {"end_time", end_time},
+          {"end_time", time_steps.end_time},
           {"degree", setting.degree},
           {"bdf", setting.bdf},
           {"start", to_string(setting.start)},
           {"quadrature", setting.rule.name},
-          {"meshes", meshes},
+          {"meshes", mesh_parameter(setting.meshes, "generated, edge length 0.5 2^(-level/2)")},
           {"flows", setting.flows}};
 }
 
@@ -217,15 +173,9 @@ int main(int argc, char** argv) {
       "lengths 0.5 2^(-j/2), level j = 0..4. Lengths and times have no units: v = -H nu.\n\n"
       "Example: mcf_sphere --preset check --levels 0 --steps 2-4 --output table.json";
   experiment.add_options = [&](CLI::App& app) {
-    app.add_option("--flow", own.flows, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6); both unless given")
-        ->check(CLI::IsMember(known_flows))
-        ->delimiter(',')
-        ->type_name("LIST")
-        ->group("Method (not given: as in the preset)");
-    app.add_option("--quadrature", own.quadrature,
-                   "rule on each element: conical:N (N x N Gauss points) | degree:D (symmetric)")
-        ->type_name("RULE")
-        ->group("Method (not given: as in the preset)");
+    add_names_option(app, "--flow", known_flows,
+                     "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6); both unless given", own.flows);
+    add_quadrature_option(app, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

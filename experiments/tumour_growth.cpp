@@ -21,6 +21,8 @@
 #include <cmath>
 
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/grid.hpp"
+#include "experiments/harness/method_options.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/mesh.hpp"
@@ -29,15 +31,8 @@ namespace {
 
 using namespace esfem;
 
-const double end_time = 5, largest_tau = 0.01;
+const HalvedSteps time_steps{5, 0.01};
 const int disturbance_seed = 1;
-
-double step_size(int k) {
-  return largest_tau * std::pow(2.0, -k);
-}
-int step_count(int k) {
-  return static_cast<int>(std::lround(end_time / step_size(k)));
-}
 
 struct Setting {
   int degree, bdf;
@@ -53,7 +48,7 @@ Setting resolve(const Options& options, double gamma) {
   Setting setting;
   setting.degree = options.degree.value_or(2);
   setting.bdf = options.bdf.value_or(2);
-  setting.levels = options.levels.value_or(paper ? std::vector<int>{0, 1} : std::vector<int>{0});
+  setting.levels = options.levels.value_or(paper ? range(0, 1) : range(0, 0));
   setting.steps = options.steps.value_or(paper ? std::vector<int>{1} : std::vector<int>{0});
   setting.start = options.start.value_or(parse_start("substeps:16"));
   if (setting.start.kind == Start::exact)
@@ -62,12 +57,13 @@ Setting resolve(const Options& options, double gamma) {
   return setting;
 }
 
-Row run_cell(const Setting& setting, int level, int k, const std::string& folder) {
+Row run_cell(const Setting& setting, Row row, const std::string& folder) {
   // 1. The unit sphere and the finite element space on it: 2,562 nodes at level 0, 10,242 at level 1
   // (quadratic elements).
-  Mesh mesh = lagrange_mesh(icosphere(1, 3 + level), setting.degree);
-  project_nodes(mesh, sphere(1));
+  const auto generate = [&] { return icosphere(1, 3 + row.level); };
+  const Mesh mesh = initial_mesh({}, row.level, generate, sphere(1), setting.degree);
   const SurfaceSpace space(mesh);
+  describe_mesh(mesh, row);
 
   // 2. The flow and its disturbed steady state.
   TumourGrowth::Kinetics kinetics;
@@ -78,8 +74,8 @@ Row run_cell(const Setting& setting, int level, int k, const std::string& folder
       tumour_growth_state(space, mesh.nodes, kinetics, 0.01, disturbance_seed);
 
   // 3. The time steps.
-  const TimeGrid grid{setting.bdf, step_size(k), step_count(k), setting.start};
-  RunRecorder recorder(space, {folder.empty() ? "" : folder + "/surfaces.pvd", {2, 3, 4}, 0});
+  const TimeGrid grid{setting.bdf, row.tau, row.steps, setting.start};
+  RunRecorder recorder(space, snapshot_plan(folder, {2, 3, 4}));
   integrate(flow, grid, initial, {}, [&](int n, const CoupledDiffusionState& state) {
     recorder.record(n, state.t, state.x, point_fields(state));
     Series& series = recorder.series();
@@ -91,19 +87,10 @@ Row run_cell(const Setting& setting, int level, int k, const std::string& folder
   recorder.finish();
 
   // 4. The row of the table.
-  Row row;
-  row.level = level;
-  row.h = mesh_quality(mesh.elements, mesh.nodes).h;
-  row.nodes = space.dofs();
-  row.tau = grid.tau;
-  row.steps = grid.steps;
-  row.series = recorder.series();
+  describe_run(recorder, row);
   row.values["contrast"] = row.series["max_u1"].back() - row.series["min_u1"].back();
   row.values["area_ratio"] = row.series["area"].back() / row.series["area"].front();
   row.values["last_worst_angle"] = row.series["worst_angle"].back();
-  for (const RunRecorder::Snapshot& snapshot : recorder.snapshots()) {
-    row.more["snapshots"].push_back({{"t", snapshot.t}, {"file", snapshot.file}});
-  }
   return row;
 }
 
@@ -112,12 +99,10 @@ std::vector<Cell> cells(const Setting& setting) {
   for (int level : setting.levels) {
     for (int k : setting.steps) {
       const double nodes = 2562 * std::pow(4, level);
-      Cell cell{format("h%d_tau%d", level, k), nodes * step_count(k) * 4e-6,
-                [=](const std::string& folder) { return run_cell(setting, level, k, folder); }};
-      cell.planned.level = level;
-      cell.planned.tau = step_size(k);
-      cell.planned.steps = step_count(k);
-      list.push_back(cell);
+      list.push_back(
+          {format("h%d_tau%d", level, k), nodes * time_steps.count(k) * 4e-6,
+           [=](const Row& row, const std::string& folder) { return run_cell(setting, row, folder); },
+           planned_row(level, time_steps, k)});
     }
   }
   return list;
@@ -125,7 +110,7 @@ std::vector<Cell> cells(const Setting& setting) {
 
 nlohmann::json parameters(const Setting& setting, const std::string& preset) {
   return {{"preset", preset},
-          {"end_time", end_time},
+          {"end_time", time_steps.end_time},
           {"degree", setting.degree},
           {"bdf", setting.bdf},
           {"gamma", setting.gamma},
@@ -149,7 +134,7 @@ int main(int argc, char** argv) {
     app.add_option("--gamma", gamma, "size of the tumour: factor of the kinetics")
         ->check(CLI::PositiveNumber)
         ->capture_default_str()
-        ->group("Method (not given: as in the preset)");
+        ->group(method_group);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, gamma)); };
   experiment.parameters = [&](const Options& options) {

@@ -28,9 +28,10 @@ struct Options {
 struct Cell {
   std::string name;  ///< unique, no blanks or slashes, e.g. "h2_tau5"
   double cost;       ///< estimated seconds on one core
-  /// Fills everything of the row but cell, seconds, peak_memory_mb. Other files of the run (snapshots) go
-  /// into `folder`, which may not exist yet; "": none are wanted. It is cells/STEM/CELL beside the table.
-  std::function<Row(const std::string& folder)> run;
+  /// Completes the planned row: everything but cell, seconds, peak_memory_mb. Other files of the run
+  /// (snapshots) go into `folder`, which may not exist yet; "": none are wanted. It is cells/STEM/CELL beside
+  /// the table.
+  std::function<Row(Row row, const std::string& folder)> run;
   Row planned = {};  ///< what is known beforehand (level, tau, steps, ...): the row of a run that fails
 };
 

@@ -10,6 +10,7 @@
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/library_environment.hpp"
+#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/peak_memory.hpp"
 #include "experiments/harness/progress.hpp"
 #include "experiments/harness/provenance.hpp"
@@ -64,34 +65,33 @@ void add_run_options(CLI::App& app, Request& request) {
 }
 
 void add_method_options(CLI::App& app, Options& options) {
-  const std::string group = "Method (not given: as in the preset)";
   app.add_option("--degree", options.degree, "polynomial degree of the finite elements")
       ->check(CLI::Range(1, 4))
-      ->group(group);
+      ->group(method_group);
   app.add_option("--bdf", options.bdf, "order of the backward difference formula")
       ->check(CLI::Range(1, 5))
-      ->group(group);
+      ->group(method_group);
   app.add_option_function<std::string>(
          "--levels", [&](const std::string& text) { options.levels = parse_list(text, "--levels"); },
          "mesh levels, such as 0,1,2 or 0-4")
       ->type_name("LIST")
-      ->group(group);
+      ->group(method_group);
   app.add_option_function<std::string>(
          "--steps", [&](const std::string& text) { options.steps = parse_list(text, "--steps"); },
          "exponents k of the step sizes tau_0 2^-k, such as 0,1 or 0-7")
       ->type_name("LIST")
-      ->group(group);
+      ->group(method_group);
   app.add_option_function<std::string>(
          "--start", [&](const std::string& text) { options.start = parse_start(text); },
          "starting values: exact | cascade (lower orders, same step size) | substeps:K (step size tau/K)")
       ->type_name("START")
-      ->group(group);
+      ->group(method_group);
   app.add_option("--mesh", options.meshes,
                  "mesh file (Gmsh, OFF, OBJ, PLY, STL) instead of generated meshes; repeatable")
       ->check(CLI::ExistingFile)
       ->type_name("FILE")
       ->allow_extra_args(false)
-      ->group(group);
+      ->group(method_group);
 }
 
 std::vector<Cell> checked_cells(const Experiment& experiment, const Options& options) {
@@ -139,7 +139,7 @@ Row run_cell(const Cell& cell, const std::string& folder) {
   reset_peak_memory();
   Row row = cell.planned;
   try {
-    row = cell.run(folder);
+    row = cell.run(cell.planned, folder);
   } catch (const NumericsError& error) {
     row.status = std::string("failed: ") + error.what();
   }

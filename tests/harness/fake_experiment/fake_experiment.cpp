@@ -44,7 +44,7 @@ int thread_count() {
   return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
 }
 
-Row run(const Row& planned, const std::string& name, const std::string& folder, const FakeOptions& fake) {
+Row run(Row row, const std::string& name, const std::string& folder, const FakeOptions& fake) {
   usleep(1000 * fake.milliseconds);
   if (name == fake.failing_cell) throw NumericsError("step 3, t = 0.3: element 7 is degenerate");
   if (name == fake.memory_cell) throw std::bad_alloc();
@@ -52,7 +52,6 @@ Row run(const Row& planned, const std::string& name, const std::string& folder, 
     std::filesystem::create_directories(folder);
     write_file(folder + "/snapshot", "as on the day");
   }
-  Row row = planned;
   row.nodes = std::lround(1 / (row.h * row.h));
   row.errors["u"]["nodal_L2"] = row.h * row.h + std::pow(row.tau, 3);
   factorise();
@@ -72,8 +71,9 @@ std::vector<Cell> cells(const Options& options, const FakeOptions& fake) {
       planned.tau = 0.1 * std::pow(2.0, -k);
       planned.steps = 1 << k;
       const std::string name = format("h%d_tau%d", level, k);
-      cells.push_back({name, std::pow(4.0, level) * planned.steps,
-                       [=](const std::string& folder) { return run(planned, name, folder, fake); }, planned});
+      cells.push_back(
+          {name, std::pow(4.0, level) * planned.steps,
+           [=](const Row& row, const std::string& folder) { return run(row, name, folder, fake); }, planned});
     }
   return cells;
 }

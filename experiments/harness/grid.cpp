@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/harness/grid.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "experiments/harness/warn.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+
+std::vector<int> range(int first, int last) {
+  std::vector<int> list;
+  for (int i = first; i <= last; ++i) list.push_back(i);
+  return list;
+}
+
+double HalvedSteps::tau(int k) const {
+  return largest * std::pow(2.0, -k);
+}
+
+int HalvedSteps::count(int k) const {
+  return static_cast<int>(std::lround(end_time / tau(k)));
+}
+
+double edge_length(double largest, int level) {
+  return largest * std::pow(2.0, -0.5 * level);
+}
+
+std::vector<int> mesh_levels(const Options& options, const std::vector<int>& otherwise) {
+  const int files = static_cast<int>(options.meshes.size());
+  const std::vector<int> levels = options.levels.value_or(files ? range(0, files - 1) : otherwise);
+  if (files) require_levels(levels, files, "--mesh files");
+  return levels;
+}
+
+void require_levels(const std::vector<int>& levels, int count, const std::string& counted) {
+  for (int level : levels) {
+    if (level >= count) {
+      throw InputError(format("--levels: found %d, expected less than %d, the number of %s", level, count,
+                              counted.c_str()));
+    }
+  }
+}
+
+Mesh initial_mesh(const std::vector<std::string>& files, int level, const std::function<Mesh()>& generate,
+                  const Surface& surface, int degree) {
+  Mesh mesh = lagrange_mesh(files.empty() ? generate() : mesh_from_file(files.at(level)), degree);
+  project_nodes(mesh, surface);
+  return mesh;
+}
+
+nlohmann::json mesh_parameter(const std::vector<std::string>& files, const std::string& generated) {
+  return files.empty() ? nlohmann::json(generated) : nlohmann::json(files);
+}
+
+Row planned_row(int level, const HalvedSteps& steps, int k, nlohmann::json labels) {
+  Row row;
+  row.level = level;
+  row.tau = steps.tau(k);
+  row.steps = steps.count(k);
+  row.more = std::move(labels);
+  return row;
+}
+
+void describe_mesh(const Mesh& mesh, Row& row) {
+  row.h = mesh_quality(mesh.elements, mesh.nodes).h;
+  row.nodes = static_cast<int>(mesh.nodes.rows());
+}
+
+SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>& times) {
+  return {folder.empty() ? "" : folder + "/surfaces.pvd", times, 0};
+}
+
+std::string run_to_end(const std::function<void()>& integrate, RunRecorder& recorder) {
+  std::string status = "ok";
+  try {
+    integrate();
+  } catch (const SingularityError& singularity) {
+    status = singularity.what();
+  } catch (const NumericsError& error) {
+    if (recorder.empty()) throw;
+    status = std::string("failed: ") + error.what();
+  }
+  recorder.finish();
+  return status;
+}
+
+void describe_run(RunRecorder& recorder, Row& row) {
+  row.series = recorder.series();
+  for (const RunRecorder::Snapshot& snapshot : recorder.snapshots())
+    row.more["snapshots"].push_back({{"t", snapshot.t}, {"file", snapshot.file}});
+}
+
+}  // namespace esfem

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the experiments' grids of runs have in common: step sizes, mesh levels, initial surfaces, and what a
+// row says of them.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "experiments/harness/experiment.hpp"
+#include "solver/analysis/run_recorder.hpp"
+#include "solver/mesh/mesh.hpp"
+
+namespace esfem {
+
+/// first, first + 1, .., last; empty when last < first.
+std::vector<int> range(int first, int last);
+
+/// The step sizes tau = largest 2^-k on [0, end_time].
+struct HalvedSteps {
+  double end_time, largest;
+
+  double tau(int k) const;
+  /// The number of steps nearest to end_time / tau.
+  int count(int k) const;
+};
+
+/// The edge length of a level, largest 2^(-level/2): each level has twice as many triangles as the one
+/// before.
+double edge_length(double largest, int level);
+
+/// The mesh levels of a run: those of --levels, else one for each --mesh file, else `otherwise`. Throws
+/// InputError when there are mesh files and a level has none.
+std::vector<int> mesh_levels(const Options& options, const std::vector<int>& otherwise);
+
+/// Throws InputError that names --levels unless every level is less than count, the number of what `counted`
+/// says ("--mesh files").
+void require_levels(const std::vector<int>& levels, int count, const std::string& counted);
+
+/// The initial surface of a run, from files[level], or made by `generate` when there are no files: elements
+/// of the given degree with their nodes on the surface. What the reader of a file changed is said on standard
+/// error.
+Mesh initial_mesh(const std::vector<std::string>& files, int level, const std::function<Mesh()>& generate,
+                  const Surface& surface, int degree);
+
+/// What the parameters of a table say of the meshes: the files, or `generated` when there are none.
+nlohmann::json mesh_parameter(const std::vector<std::string>& files, const std::string& generated);
+
+/// The row of a run as it is known beforehand, with the labels that tell it apart beside mesh and step size.
+Row planned_row(int level, const HalvedSteps& steps, int k, nlohmann::json labels = nlohmann::json::object());
+
+/// Fills in h and nodes.
+void describe_mesh(const Mesh& mesh, Row& row);
+
+/// Snapshots at the given times as surfaces.pvd in the folder of a run; none without folder.
+SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>& times);
+
+/// Integrates a flow whose steps are recorded, and finishes the recorder. Returns the status of the row:
+/// "ok", or why the run ended before its time. A NumericsError of a run without any recorded step passes
+/// through.
+std::string run_to_end(const std::function<void()>& integrate, RunRecorder& recorder);
+
+/// Fills in the series, and the list "snapshots" of {"t", "file"} when there are some.
+void describe_run(RunRecorder& recorder, Row& row);
+
+}  // namespace esfem
