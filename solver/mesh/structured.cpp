@@ -121,14 +121,22 @@ Mesh isothermal_torus_grid(double major, double minor, int n_major, int n_minor)
   });
 }
 
+std::function<double(const Vec3&)> radial_edge_length(double inner_distance, double inner_length,
+                                                      double outer_distance, double outer_length) {
+  if (!(inner_distance >= 0) || !(outer_distance > inner_distance))
+    throw InputError(
+        format("edge lengths at the distances %g and %g from the axis, 0 <= first < second expected",
+               inner_distance, outer_distance));
+  return [=](const Vec3& y) {
+    const double outwards = (std::hypot(y[0], y[1]) - inner_distance) / (outer_distance - inner_distance);
+    return inner_length + (outer_length - inner_length) * std::clamp(outwards, 0.0, 1.0);
+  };
+}
+
 std::function<double(const Vec3&)> torus_edge_length(double major, double minor, double largest) {
   check_torus_radii(major, minor);
-  const double inner = std::min(1.0, (major - minor) / minor);
-  return [=](const Vec3& y) {
-    const double outwards = (std::hypot(y[0], y[1]) - (major - minor)) / (2 * minor);
-    // Midpoints of edges can lie a little off the torus.
-    return largest * (inner + (1 - inner) * std::clamp(outwards, 0.0, 1.0));
-  };
+  const double smallest = largest * std::min(1.0, (major - minor) / minor);
+  return radial_edge_length(major - minor, smallest, major + minor, largest);
 }
 
 }  // namespace esfem

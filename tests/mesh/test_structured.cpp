@@ -146,6 +146,21 @@ TEST(TorusEdgeLength, IsTheLargestOutsideAndResolvesTheHole) {
   EXPECT_LT(2 * mesh.nodes.rows(), generate_mesh(torus(1, minor), 1 - minor).nodes.rows());
 }
 
+TEST(RadialEdgeLength, IsLinearInTheDistanceFromTheAxis) {
+  const auto size = radial_edge_length(0.5, 0.1, 1.5, 0.3);
+  EXPECT_NEAR(size(Vec3(0.6, -0.8, 7)), 0.2, 1e-15);
+  EXPECT_NEAR(size(Vec3(0.3, 0, -1)), 0.1, 1e-15);
+  EXPECT_NEAR(size(Vec3(0, 2, 0)), 0.3, 1e-15);
+}
+
+TEST(RadialEdgeLength, ResolvesADeeplyPerturbedTorusWithFewerVertices) {
+  const Surface surface = perturbed_torus(1, 0.6, 0.1, 4);
+  EXPECT_THROW(generate_mesh(surface, 0.12), InputError);
+  const Mesh mesh = generate_mesh(surface, radial_edge_length(0.3, 0.25 * 0.2654, 1.7, 0.2654));
+  EXPECT_EQ(euler_characteristic(mesh), 0);
+  EXPECT_NEAR(mesh.nodes.rows(), 2252, 200);
+}
+
 TEST(StructuredMeshes, RefuseWrongParameters) {
   EXPECT_THROW(icosphere(0, 1), InputError);
   EXPECT_THROW(icosphere(NAN, 1), InputError);
@@ -156,4 +171,5 @@ TEST(StructuredMeshes, RefuseWrongParameters) {
   EXPECT_THROW(isothermal_torus_grid(1, 1, 6, 6), InputError);
   EXPECT_THROW(isothermal_torus_grid(2, 1, 6, 2), InputError);
   EXPECT_THROW(torus_edge_length(1, 1.5, 0.1), InputError);
+  EXPECT_THROW(radial_edge_length(2, 0.1, 1, 0.2), InputError);
 }
