@@ -63,4 +63,42 @@ void RunRecorder::finish() {
   write_newest();
 }
 
+nlohmann::json RunRecorder::progress() const {
+  nlohmann::json snapshots = nlohmann::json::array(), fields = nlohmann::json::array();
+  for (const Snapshot& snapshot : snapshots_)
+    snapshots.push_back({{"t", snapshot.t}, {"file", snapshot.file}});
+  for (const PointField& field : newest_.fields)
+    fields.push_back({{"name", field.name}, {"values", packed(field.values)}});
+  return {{"series", series_},
+          {"next_time", next_time_},
+          {"snapshots", std::move(snapshots)},
+          {"newest", {{"t", newest_.t}, {"x", packed(newest_.x)}, {"fields", std::move(fields)}}}};
+}
+
+void RunRecorder::resume(const nlohmann::json& progress) {
+  auto series = progress.at("series").get<Series>();
+  const auto next_time = progress.at("next_time").get<std::size_t>();
+  std::vector<Snapshot> snapshots;
+  std::vector<std::pair<double, std::string>> listed;
+  for (const nlohmann::json& snapshot : progress.at("snapshots")) {
+    snapshots.push_back({snapshot.at("t").get<double>(), snapshot.at("file").get<std::string>()});
+    listed.emplace_back(snapshots.back().t, snapshots.back().file);
+  }
+  const nlohmann::json& surface = progress.at("newest");
+  Surface newest = {surface.at("t").get<double>(), unpacked(surface.at("x")), {}};
+  for (const nlohmann::json& field : surface.at("fields"))
+    newest.fields.push_back({field.at("name").get<std::string>(), unpacked(field.at("values"))});
+
+  if (collection_) collection_->resume(std::move(listed));
+  series_ = std::move(series);
+  next_time_ = next_time;
+  snapshots_ = std::move(snapshots);
+  newest_ = std::move(newest);
+}
+
+void attach(Checkpoint& checkpoint, RunRecorder& recorder) {
+  checkpoint.attach([&recorder] { return recorder.progress(); },
+                    [&recorder](const nlohmann::json& progress) { recorder.resume(progress); });
+}
+
 }  // namespace esfem

@@ -8,6 +8,7 @@
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/flows/discrete_curvature.hpp"
 #include "solver/mesh/write_vtu.hpp"
+#include "solver/time/checkpoint.hpp"
 
 namespace esfem {
 
@@ -53,6 +54,12 @@ class RunRecorder {
   };
   const std::vector<Snapshot>& snapshots() const { return snapshots_; }
 
+  /// All that has been recorded, for CBOR.
+  nlohmann::json progress() const;
+  /// Goes on from there, whatever has been recorded until now; the plan must be the same. Throws InputError,
+  /// and changes nothing, when a snapshot's file is missing.
+  void resume(const nlohmann::json& progress);
+
  private:
   bool is_due(int n, double t);
   void write_newest();
@@ -66,5 +73,8 @@ class RunRecorder {
   Surface newest_;
   std::vector<Snapshot> snapshots_;
 };
+
+/// A run that goes on from the checkpoint goes on with its records, too. The recorder must outlive the run.
+void attach(Checkpoint& checkpoint, RunRecorder& recorder);
 
 }  // namespace esfem

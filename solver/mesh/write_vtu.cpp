@@ -18,7 +18,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <set>
 #include <sstream>
 
@@ -184,8 +183,13 @@ std::string SnapshotCollection::add(double t, const Field& x, const std::vector<
   return name;
 }
 
-double SnapshotCollection::last_time() const {
-  return snapshots_.empty() ? std::numeric_limits<double>::quiet_NaN() : snapshots_.back().first;
+void SnapshotCollection::resume(std::vector<std::pair<double, std::string>> snapshots) {
+  const std::filesystem::path folder = std::filesystem::path(pvd_).parent_path();
+  for (const auto& [t, name] : snapshots)
+    if (!std::filesystem::is_regular_file(folder / name))
+      throw InputError(format("%s: the snapshot at t = %g is missing", (folder / name).c_str(), t));
+  if (!snapshots.empty()) write_file(pvd_, pvd_text(snapshots));
+  snapshots_ = std::move(snapshots);
 }
 
 }  // namespace esfem

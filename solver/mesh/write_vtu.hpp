@@ -32,8 +32,9 @@ class SnapshotCollection {
   /// Writes the next snapshot and returns its file name without the folder. Errors as write_vtu.
   std::string add(double t, const Field& x, const std::vector<PointField>& fields);
 
-  /// The last snapshot's time; NaN when there is none.
-  double last_time() const;
+  /// Goes on after these snapshots (times and names as `add` gave them), whatever is listed now. Throws
+  /// InputError when the file of one is missing.
+  void resume(std::vector<std::pair<double, std::string>> snapshots);
 
  private:
   std::string pvd_;

@@ -40,4 +40,23 @@ std::vector<double> bdf_gamma(int q) {
   return gamma;
 }
 
+void bdf_weights(int q, const double* old, double t, double* delta, double* gamma) {
+  check_bdf_order(q);
+  for (int j = 0; j < q; ++j) {
+    const double newer = j == 0 ? t : old[j - 1];
+    if (!(old[j] < newer))
+      throw InputError(format("BDF: time %.17g after %.17g, expected increasing times", newer, old[j]));
+  }
+  const double tau = t - old[0];
+  delta[0] = 0;
+  for (int j = 0; j < q; ++j) {
+    gamma[j] = 1;
+    for (int i = 0; i < q; ++i)
+      if (i != j) gamma[j] *= (t - old[i]) / (old[j] - old[i]);
+    const double ratio = tau / (t - old[j]);
+    delta[0] += ratio;
+    delta[j + 1] = -ratio * gamma[j];
+  }
+}
+
 }  // namespace esfem

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -55,6 +56,16 @@ class History {
     else
       std::swap(states_.back(), next);
     std::rotate(states_.begin(), states_.end() - 1, states_.end());
+  }
+
+  /// For steps of different sizes: from now on the weights of order q are those for a step from back(0).t,
+  /// back(1).t, .. to t (bdf_weights, with its errors and its bounds on step sizes); until the first call
+  /// they are those of equal steps. Allocates nothing.
+  void aim(int q, double t) {
+    require(q, size());
+    std::array<double, max_bdf_order> old;
+    for (int j = 0; j < q; ++j) old[j] = states_[j].t;
+    bdf_weights(q, old.data(), t, delta_[q - 1].data(), gamma_[q - 1].data());
   }
 
   /// delta_0..delta_q of BDF q <= capacity, without allocation: a step needs delta(q)[0].

@@ -40,4 +40,8 @@ void check_time_grid(const TimeGrid& grid) {
     throw InputError(format("%d substeps per step: expected 1 or more", grid.start.substeps_per_step));
 }
 
+nlohmann::json to_json(const TimeGrid& grid) {
+  return {{"order", grid.order}, {"tau", grid.tau}, {"steps", grid.steps}, {"start", to_string(grid.start)}};
+}
+
 }  // namespace esfem

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solver/error.hpp"
+#include "solver/time/checkpoint.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -31,6 +32,7 @@ struct TimeGrid {
 
 /// Throws InputError unless 1 <= order <= 5, tau > 0, steps >= 0, K >= 1.
 void check_time_grid(const TimeGrid& grid);
+nlohmann::json to_json(const TimeGrid& grid);
 
 /// Throws NumericsError naming field and node when a value of the state is not finite.
 template <class State>
@@ -44,9 +46,9 @@ void check_finite(const State& state) {
   }
 }
 
-/// Adds step and time to the NumericsErrors of `body`.
+/// Adds step and time (as `body` leaves it) to the NumericsErrors of `body`.
 template <class Body>
-void at_step(int n, double t, Body&& body) {
+void at_step(int n, const double& t, Body&& body) {
   try {
     body();
   } catch (const SingularityError& error) {
@@ -120,34 +122,58 @@ void take_starting_steps(Flow& flow, const TimeGrid& grid, const typename Flow::
     });
 }
 
+/// Runs `body`, the steps of a run, and removes the file of the checkpoint when the run has come to its end,
+/// be it by a failure of the numerics.
+template <class Body>
+void until_end(Checkpoint* checkpoint, Body&& body) {
+  try {
+    body();
+  } catch (const NumericsError&) {
+    if (checkpoint) checkpoint->remove();
+    throw;
+  }
+  if (checkpoint) checkpoint->remove();
+}
+
 /// Runs a flow from t = 0: calls observe(n, state) for n = 0..steps, the starting steps included; t = n tau.
 /// A flow has a type State (see History) and
 ///   void step(const History<State>& past, int q, double tau, State& next)
 /// that computes next (its t is set already, its Fields have the right size and stale values) from the q
 /// newest states by BDF of order q. exact_state(t) is needed for Start::exact with q > 1; without it that
 /// start is an InputError. NumericsErrors (of the observer too) are rethrown with step and time; a non-finite
-/// value in a new state is one too.
+/// value in a new state is one too. With a checkpoint the run goes on where one that was stopped had saved
+/// its states (after the starting steps, that is), and observes the steps from there on.
 template <class Flow, class Observer>
 void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
-               const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe) {
+               const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe,
+               Checkpoint* checkpoint = nullptr) {
   check_time_grid(grid);
   if (grid.start.kind == Start::exact && grid.order > 1 && grid.steps > 0 && !exact_state)
     throw InputError("start exact: there is no exact solution; expected start cascade or substeps:K");
 
   History<typename Flow::State> past(grid.order);
+  RunPosition done;
   initial.t = 0;
-  take_starting_steps(flow, grid, initial, exact_state, observe, past);
-  typename Flow::State& next = initial;
-  for (int n = grid.order; n <= grid.steps; ++n) {
-    const double t = n * grid.tau;
-    at_step(n, t, [&] {
-      next.t = t;
-      flow.step(past, grid.order, grid.tau, next);
-      check_finite(next);
-      observe(n, std::as_const(next));
-      past.push(next);
-    });
-  }
+  until_end(checkpoint, [&] {
+    if (!checkpoint || !checkpoint->resume(to_json(grid), initial, past, done)) {
+      take_starting_steps(flow, grid, initial, exact_state, observe, past);
+      done.n = grid.order - 1;
+    }
+    typename Flow::State& next = initial;
+    while (done.n < grid.steps) {
+      const int n = done.n + 1;
+      const double t = n * grid.tau;
+      at_step(n, t, [&] {
+        next.t = t;
+        flow.step(past, grid.order, grid.tau, next);
+        check_finite(next);
+        observe(n, std::as_const(next));
+        past.push(next);
+      });
+      done.n = n;
+      if (checkpoint) checkpoint->save_when_due(done, past);
+    }
+  });
 }
 
 }  // namespace esfem

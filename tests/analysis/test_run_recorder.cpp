@@ -78,5 +78,25 @@ TEST_F(RunRecorderOnASphere, AStepThatCannotBeRecordedLeavesNoTrace) {
   EXPECT_THAT(times(recorder), ElementsAre(0));
 }
 
+TEST_F(RunRecorderOnASphere, GoesOnFromItsProgress) {
+  const SurfaceSpace space(mesh);
+  RunRecorder first(space, {pvd, {}, 2});
+  for (int n = 0; n <= 3; ++n) first.record(n, 0.1 * n, (1 + 0.1 * n) * mesh.nodes, {{"v", mesh.nodes}});
+  RunRecorder second(space, {pvd, {}, 2});
+  second.resume(nlohmann::json::from_cbor(nlohmann::json::to_cbor(first.progress())));
+  EXPECT_EQ(second.series(), first.series());
+  EXPECT_EQ(second.newest().t, first.newest().t);
+  EXPECT_EQ(second.newest().x, first.newest().x);
+  ASSERT_EQ(second.newest().fields.size(), 1u);
+  EXPECT_EQ(second.newest().fields[0].values, mesh.nodes);
+  second.finish();
+  ASSERT_EQ(second.snapshots().size(), 3u) << "the newest surface of the first is the last snapshot";
+  EXPECT_EQ(second.snapshots()[2].t, first.newest().t);
+
+  second.resume(RunRecorder(space, {pvd, {}, 2}).progress());
+  EXPECT_TRUE(second.empty());
+  EXPECT_TRUE(second.snapshots().empty());
+}
+
 }  // namespace
 }  // namespace esfem

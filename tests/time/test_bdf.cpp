@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numeric>
+#include <random>
 
 #include "solver/error.hpp"
 #include "solver/time/bdf.hpp"
@@ -65,6 +66,72 @@ TEST(Bdf, ExtrapolationIsExactUpToDegreeQMinus1) {
         EXPECT_GT(error, 1e-2) << "q = " << q << ": the order is higher than it can be";
     }
   }
+}
+
+struct Weights {
+  std::vector<double> delta, gamma;
+};
+Weights weights(int q, const std::vector<double>& old, double t) {
+  Weights result{std::vector<double>(q + 1), std::vector<double>(q)};
+  bdf_weights(q, old.data(), t, result.delta.data(), result.gamma.data());
+  return result;
+}
+
+TEST(BdfWeights, AreTheUsualOnesForEqualSteps) {
+  const double tau = 0.037;
+  for (int q = 1; q <= max_bdf_order; ++q) {
+    SCOPED_TRACE(q);
+    std::vector<double> old;
+    for (int j = 0; j < q; ++j) old.push_back(-j * tau);
+    const auto [delta, gamma] = weights(q, old, tau);
+    expect_near(delta, bdf_delta(q));
+    expect_near(gamma, bdf_gamma(q));
+  }
+}
+
+TEST(BdfWeights, OfOrderTwoAreTheTextbooks) {
+  for (const double w : {0.1, 0.5, 1.0, 1.5, 2.4}) {
+    const double t = 0.7, before = 0.03;
+    const auto [delta, gamma] = weights(2, {t, t - before}, t + w * before);
+    expect_near(delta, {(1 + 2 * w) / (1 + w), -(1 + w), w * w / (1 + w)});
+    expect_near(gamma, {1 + w, -w});
+  }
+}
+
+TEST(BdfWeights, AreExactForPolynomialsOnAnyTimes) {
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<double> step(0.3, 1.5);
+  for (int q = 1; q <= max_bdf_order; ++q)
+    for (int sample = 0; sample < 20; ++sample) {
+      const double t = 1.3;
+      std::vector<double> old = {t - step(generator)};
+      while (int(old.size()) < q) old.push_back(old.back() - step(generator));
+      const auto [delta, gamma] = weights(q, old, t);
+      const double tau = t - old[0];
+      for (int m = 0; m <= q + 1; ++m) {
+        const auto value = [&](double s) { return std::pow(s - t, m); };
+        double derivative = delta[0] * value(t) / tau, extrapolated = 0;
+        for (int j = 0; j < q; ++j) derivative += delta[j + 1] * value(old[j]) / tau;
+        for (int j = 0; j < q; ++j) extrapolated += gamma[j] * value(old[j]);
+        const double derivative_error = std::abs(derivative - (m == 1 ? 1 : 0));
+        const double extrapolation_error = std::abs(extrapolated - (m == 0 ? 1 : 0));
+        if (m <= q)
+          EXPECT_LT(derivative_error, 1e-10) << "q = " << q << ", degree " << m;
+        else
+          EXPECT_GT(derivative_error, 1e-2) << "q = " << q << ": the order is higher than it can be";
+        if (m < q)
+          EXPECT_LT(extrapolation_error, 1e-10) << "q = " << q << ", degree " << m;
+        else
+          EXPECT_GT(extrapolation_error, 1e-3) << "q = " << q << ": the order is higher than it can be";
+      }
+    }
+}
+
+TEST(BdfWeights, NeedIncreasingTimes) {
+  EXPECT_THROW(weights(1, {0}, 0), InputError);
+  EXPECT_THROW(weights(2, {1, 1}, 2), InputError);
+  EXPECT_THROW(weights(2, {1, 0}, 0.5), InputError);
+  EXPECT_THROW(weights(1, {0}, std::nan("")), InputError);
 }
 
 TEST(Bdf, OtherOrdersAreErrors) {

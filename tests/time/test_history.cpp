@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 #include "solver/time/history.hpp"
@@ -63,6 +64,60 @@ TEST(History, ExtrapolatesAndSumsAQuadratic) {
   history.bdf_sum(3, &State::x, out);
   const double derivative = (history.delta(3)[0] * value(4 * tau) + out(0, 0)) / tau;
   EXPECT_NEAR(derivative, -1 + 6 * 4 * tau, 1e-12);
+}
+
+TEST(History, AimedAtATimeItIsExactOnUnequalSteps) {
+  const auto value = [](double t) { return 2 - t + 3 * t * t; };
+  const double times[] = {0, 0.1, 0.13, 0.3}, t = 0.37;
+  History<State> history(3);
+  for (const double s : times) {
+    State next = constant(value(s));
+    next.t = s;
+    history.push(next);
+  }
+  const auto derivative = [&] {
+    Field out;
+    history.bdf_sum(2, &State::x, out);
+    return (history.delta(2)[0] * value(t) + out(0, 0)) / (t - 0.3);
+  };
+  EXPECT_GT(std::abs(derivative() - (-1 + 6 * t)), 0.03) << "the weights of equal steps";
+  history.aim(2, t);
+  EXPECT_NEAR(derivative(), -1 + 6 * t, 1e-12);
+  history.aim(3, t);
+  Field out;
+  history.extrapolate(3, &State::x, out);
+  EXPECT_TRUE(out.isApprox(Field::Constant(3, 2, value(t)), 1e-13));
+  EXPECT_THROW(history.aim(2, 0.3), InputError);
+  EXPECT_THROW(history.aim(4, t), InputError);
+}
+
+/// The error at t = 1 of BDF2 on steps that are by turns short and long.
+double error_on_unequal_steps(int pairs, bool aims) {
+  LinearOde ode;
+  History<LinearOde::State> history(2);
+  const double tau = 0.4 / pairs;
+  LinearOde::State next;
+  for (const double t : {-1.5 * tau, 0.0}) {
+    next = LinearOde::exact(t);
+    history.push(next);
+  }
+  for (int n = 0; n < 2 * pairs; ++n) {
+    const double step = n % 2 == 0 ? tau : 1.5 * tau;
+    next.t = history.back(0).t + step;
+    if (aims) history.aim(2, next.t);
+    ode.step(history, 2, step, next);
+    history.push(next);
+  }
+  EXPECT_NEAR(history.back(0).t, 1, 1e-12);
+  return (history.back(0).u - LinearOde::exact(1).u).norm();
+}
+
+TEST(History, AimingKeepsTheOrderOnUnequalSteps) {
+  const auto order = [](bool aims) {
+    return std::log2(error_on_unequal_steps(64, aims) / error_on_unequal_steps(256, aims)) / 2;
+  };
+  EXPECT_NEAR(order(true), 2, 0.1);
+  EXPECT_LT(order(false), 1.5);
 }
 
 TEST(History, TooFewStatesAreAnError) {
