@@ -64,22 +64,18 @@ TEST(AdaptiveFlows, GrowthCoupledToDiffusionFollowsTheTolerance) {
   const SurfaceSpace space(problem.mesh);
   const State initial = exact_growing_sphere_state(space, growing_sphere(), problem.mesh.nodes, 0);
   const CoupledDiffusionParameters parameters;
-  for (const auto law : {CoupledDiffusionVariant::regularised, CoupledDiffusionVariant::dynamic}) {
-    Flow flow(space, GrowingSphereProblem(parameters, law), parameters,
-              {CoupledDiffusionVariant::extrapolated, law});
-    State fine, last;
-    integrate(flow, {4, 1.0 / 200, 200, parse_start("substeps:32")}, initial, {},
-              [&](int, const State& state) { fine = state; });
-    const auto error = [&](double tolerance) {
-      integrate_adaptive(flow, {2, 1, tolerance, 1e-5, 0}, initial, &State::x,
-                         [&](int, const State& state) { last = state; });
-      return (last.x - fine.x).norm() / fine.x.norm();
-    };
-    const double coarse = error(3e-3), small = error(3e-4);
-    std::printf("%g %g\n", coarse, small);
-    EXPECT_LT(coarse, 1e-2);
-    EXPECT_NEAR(std::log10(coarse / small), 1, 0.25);
-  }
+  Flow flow(space, GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised), parameters, {});
+  State fine, last;
+  integrate(flow, {4, 1.0 / 200, 200, parse_start("substeps:32")}, initial, {},
+            [&](int, const State& state) { fine = state; });
+  const auto error = [&](double tolerance) {
+    integrate_adaptive(flow, {2, 1, tolerance, 1e-5, 0}, initial, &State::x,
+                       [&](int, const State& state) { last = state; });
+    return (last.x - fine.x).norm() / fine.x.norm();
+  };
+  const double coarse = error(3e-3);
+  EXPECT_LT(coarse, 3e-3);
+  EXPECT_NEAR(std::log10(coarse / error(3e-4)), 1, 0.2);
 }
 
 TEST(AdaptiveFlows, StepsGetSmallTowardsASingularity) {
