@@ -12,7 +12,7 @@ struct AdaptiveGrid {
   int order = 2;  ///< of BDF, 1 or 2
   double end_time = 0;
   double tolerance = 1e-3;   ///< of the estimate of each step; unit: that of the controlled field
-  double first_step = 1e-6;  ///< a hundredth of it is the smallest step
+  double first_step = 1e-6;  ///< not controlled itself; a hundredth of it is the smallest step
   double largest_step = 0;   ///< 0: no bound
 };
 

@@ -70,6 +70,10 @@ json unseal(const std::string& bytes) {
 Checkpoint::Checkpoint(std::string file, json description, double seconds)
     : file_(std::move(file)), description_(std::move(description)), interval_(seconds) {
   if (!(seconds >= 0)) throw InputError(format("checkpoint every %g seconds: expected 0 or more", seconds));
+  const std::filesystem::path folder = std::filesystem::path(file_).parent_path();
+  std::error_code error;
+  if (!folder.empty()) std::filesystem::create_directories(folder, error);
+  if (error) throw InputError(folder.string() + ": this folder cannot be made: " + error.message());
 }
 
 void Checkpoint::attach(std::function<json()> save, std::function<void(const json&)> load) {

@@ -63,7 +63,7 @@ class Checkpoint {
   /// The file is replaced (as a whole) every `seconds` seconds of wall-clock time at most; 0: at every step.
   /// `description` says which run this is; what it must contain is all that its numbers depend on: the
   /// version of the program, mesh, variant, parameters. Time grid and initial values are compared beside it.
-  /// Throws InputError when `seconds` is negative.
+  /// Folders that are missing are made. Throws InputError when they cannot be, or when `seconds` is negative.
   Checkpoint(std::string file, nlohmann::json description, double seconds = 30);
 
   /// Adds what belongs to the run beside the flow. What save() returns goes into the file; load(that) is

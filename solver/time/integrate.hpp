@@ -142,7 +142,9 @@ void until_end(Checkpoint* checkpoint, Body&& body) {
 /// newest states by BDF of order q. exact_state(t) is needed for Start::exact with q > 1; without it that
 /// start is an InputError. NumericsErrors (of the observer too) are rethrown with step and time; a non-finite
 /// value in a new state is one too. With a checkpoint the run goes on where one that was stopped had saved
-/// its states (after the starting steps, that is), and observes the steps from there on.
+/// its states (after the starting steps, that is), and observes the steps from there on: with the same
+/// numbers, as long as `step` depends on its arguments alone, and not on what an earlier step has left in the
+/// flow.
 template <class Flow, class Observer>
 void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
                const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe,

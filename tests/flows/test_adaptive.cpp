@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solver/flows/dziuk_flow.hpp"
+#include "solver/flows/growing_sphere.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/time/adaptive.hpp"
 
@@ -38,10 +39,12 @@ TEST(AdaptiveFlows, MeanCurvatureFlowFollowsTheShrinkingSphere) {
   };
   const auto [coarse, coarse_run] = run(1e-3);
   const auto [fine, fine_run] = run(1e-4);
-  EXPECT_LT(coarse, 0.03);
+  EXPECT_LT(coarse, 0.01);
   EXPECT_LT(fine, coarse / 4);
-  EXPECT_LT(fine_run.steps, 200);
-  EXPECT_GT(run(1e-4, 0.1).second.rejected, 2);
+  EXPECT_LT(fine_run.steps, 150);
+  const auto [rejecting, rejecting_run] = run(1e-4, 0.02);
+  EXPECT_GT(rejecting_run.rejected, 0);
+  EXPECT_LT(rejecting, 0.01);
 }
 
 TEST(AdaptiveFlows, DziuksSchemeFollowsTheShrinkingSphere) {
@@ -54,7 +57,27 @@ TEST(AdaptiveFlows, DziuksSchemeFollowsTheShrinkingSphere) {
   EXPECT_LT(run(1e-3).first, 0.03);
 }
 
-/// The time of a sphere's vanishing, by a run that goes on until the flow refuses.
+TEST(AdaptiveFlows, GrowthCoupledToDiffusionFollowsTheTolerance) {
+  using Flow = CoupledDiffusion<GrowingSphereProblem>;
+  using State = CoupledDiffusionState;
+  const Shrinking problem;
+  const SurfaceSpace space(problem.mesh);
+  const State initial = exact_growing_sphere_state(space, growing_sphere(), problem.mesh.nodes, 0);
+  const CoupledDiffusionParameters parameters;
+  Flow flow(space, GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised), parameters, {});
+  State fine, last;
+  integrate(flow, {4, 1.0 / 200, 200, parse_start("substeps:32")}, initial, {},
+            [&](int, const State& state) { fine = state; });
+  const auto error = [&](double tolerance) {
+    integrate_adaptive(flow, {2, 1, tolerance, 1e-5, 0}, initial, &State::x,
+                       [&](int, const State& state) { last = state; });
+    return (last.x - fine.x).norm() / fine.x.norm();
+  };
+  const double coarse = error(3e-3);
+  EXPECT_LT(coarse, 3e-3);
+  EXPECT_NEAR(std::log10(coarse / error(3e-4)), 1, 0.2);
+}
+
 TEST(AdaptiveFlows, StepsGetSmallTowardsASingularity) {
   const Shrinking problem;
   const SurfaceSpace space(problem.mesh);

@@ -243,10 +243,26 @@ TEST_F(CheckpointedRun, AdaptiveStepSizeMatters) {
   EXPECT_NE(resumed.states.front().t, whole.states[20].t);
 }
 
+TEST_F(CheckpointedRun, OneThatWasStoppedAfterItsLastStepIsAtItsEnd) {
+  uniform(50);
+  json content = unseal(bytes());
+  content["run"]["n"] = 50;
+  write_file(file, seal(content));
+  EXPECT_TRUE(uniform().states.empty());
+  EXPECT_FALSE(fs::exists(file));
+}
+
 TEST_F(CheckpointedRun, IsSavedNowAndThen) {
   seconds = 3600;
   uniform(17);
   EXPECT_FALSE(fs::exists(file));
+}
+
+TEST_F(CheckpointedRun, HasAFolderOrIsAnError) {
+  file = (folder / "new/folder/run.checkpoint").string();
+  uniform(17);
+  EXPECT_TRUE(fs::exists(file));
+  EXPECT_THROW(Checkpoint(file + "/run.checkpoint", description), InputError) << "in a file";
   EXPECT_THROW(Checkpoint(file, description, -1), InputError);
   EXPECT_THROW(Checkpoint(file, description, std::nan("")), InputError);
 }
