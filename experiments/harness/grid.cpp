@@ -2,8 +2,10 @@
 #include "experiments/harness/grid.hpp"
 
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
+#include "experiments/harness/provenance.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/error.hpp"
 
@@ -84,6 +86,13 @@ std::string run_to_end(const std::function<void()>& integrate, RunRecorder& reco
   }
   recorder.finish();
   return status;
+}
+
+std::optional<Checkpoint> checkpoint_in(const std::string& folder, const std::string& cell) {
+  if (folder.empty()) return {};
+  std::filesystem::create_directories(folder);
+  const auto built = std::filesystem::last_write_time(executable_path()).time_since_epoch().count();
+  return Checkpoint(folder + "/checkpoint", {{"cell", cell}, {"built", built}});
 }
 
 void describe_run(RunRecorder& recorder, Row& row) {

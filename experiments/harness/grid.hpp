@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,10 @@ SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>&
 /// "ok", or why the run ended before its time. A NumericsError of a run without any recorded step passes
 /// through.
 std::string run_to_end(const std::function<void()>& integrate, RunRecorder& recorder);
+
+/// The file "checkpoint" in the folder of a run, from which the cell goes on when it is started again; of
+/// another cell or another build of the program it is not taken. None without folder.
+std::optional<Checkpoint> checkpoint_in(const std::string& folder, const std::string& cell);
 
 /// Fills in the series, and the list "snapshots" of {"t", "file"} when there are some.
 void describe_run(RunRecorder& recorder, Row& row);

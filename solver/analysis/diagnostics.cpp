@@ -61,6 +61,22 @@ void record_profile(const Field& x, Series& series) {
   series["tip"].push_back(x.col(2).cwiseAbs().maxCoeff());
 }
 
+double fitted_sphere_radius(const Field& x) {
+  Eigen::MatrixXd terms(x.rows(), 4);
+  terms << 2 * x, Eigen::VectorXd::Ones(x.rows());
+  const Eigen::Vector4d fit = terms.colPivHouseholderQr().solve(x.rowwise().squaredNorm());
+  return std::sqrt(fit[3] + fit.head<3>().squaredNorm());
+}
+
+TorusRadii fitted_torus_radii(const Field& x) {
+  const Field centred = x.rowwise() - x.colwise().mean();
+  const Eigen::VectorXd rho = centred.leftCols(2).rowwise().norm();
+  Eigen::MatrixXd terms(x.rows(), 2);
+  terms << 2 * rho, Eigen::VectorXd::Ones(x.rows());
+  const Eigen::Vector2d fit = terms.colPivHouseholderQr().solve(centred.rowwise().squaredNorm());
+  return {fit[0], std::sqrt(fit[1] + fit[0] * fit[0])};
+}
+
 std::optional<double> pinch_time(const Series& series) {
   const std::vector<double>&t = series.at("t"), &r = series.at("neck_radius");
   if (r.empty() || r.back() > r[0] / 2) return {};

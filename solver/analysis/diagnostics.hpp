@@ -29,6 +29,17 @@ void record_normal_length(const Field& nu, Series& series);
 /// "widest_radius" (largest distance of a node from the axis) and "tip" (largest |x3| of a node).
 void record_profile(const Field& x, Series& series);
 
+/// The radius of the sphere that fits the nodes best: least squares of |x|² = 2 c . x + const over centre and
+/// radius.
+double fitted_sphere_radius(const Field& x);
+
+/// The radii of the torus around the x3 axis (or one parallel to it) that fits the nodes best: least squares
+/// of rho² + x3² = 2 major rho + const, distances from the axis through the nodes' mean.
+struct TorusRadii {
+  double major, minor;
+};
+TorusRadii fitted_torus_radii(const Field& x);
+
 /// The time at which the neck pinches: neck_radius² extrapolated to zero from the last three steps at which
 /// the neck still has a fifth of its first radius, by a parabola, or by a line through the last two where the
 /// parabola bends upwards. Nothing when the neck has not come below half of its first radius, or does not

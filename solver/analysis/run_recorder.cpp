@@ -17,8 +17,8 @@ const Field* find(const std::vector<PointField>& fields, const std::string& name
 
 }  // namespace
 
-RunRecorder::RunRecorder(const SurfaceSpace& space, SnapshotPlan plan)
-    : space_(space), plan_(std::move(plan)), curvature_(space) {
+RunRecorder::RunRecorder(const SurfaceSpace& space, SnapshotPlan plan, Energies energies)
+    : space_(space), plan_(std::move(plan)), energies_(energies), curvature_(space) {
   for (std::size_t i = 1; i < plan_.times.size(); ++i)
     if (!(plan_.times[i] > plan_.times[i - 1]))
       throw InputError(format("snapshot times: found %g after %g, expected increasing times", plan_.times[i],
@@ -33,7 +33,9 @@ void RunRecorder::record(int n, double t, const Field& x, std::vector<PointField
   const Field* H = find(fields, "H");
   if (nu) record_normal_length(*nu, step);
   const bool writes = is_due(n, t), evolves_curvature = nu && H;
-  if (writes || !evolves_curvature) curvature_.compute(x);
+  const bool with_kappa = energies_ == of_flow_and_surface;
+  if (writes || with_kappa || !evolves_curvature) curvature_.compute(x);
+  if (with_kappa) step["kappa_energy"].push_back(curvature_.willmore_energy());
   record_curvature(space_, x, evolves_curvature ? *H : curvature_.H(), step);
 
   for (const auto& [name, values] : step) series_[name].push_back(values.front());

@@ -31,12 +31,16 @@ class RunRecorder {
     std::vector<PointField> fields;
   };
 
+  /// Whether the series have kappa_energy, which costs a factorisation a step.
+  enum Energies { of_the_flow, of_flow_and_surface };
+
   /// The space must outlive the recorder. Throws InputError when the times of the plan are not increasing.
-  RunRecorder(const SurfaceSpace& space, SnapshotPlan plan);
+  RunRecorder(const SurfaceSpace& space, SnapshotPlan plan, Energies energies = of_the_flow);
 
   /// Records step n at time t with the flow's own nodal fields (v, nu, H, ..). Series: those of
   /// record_geometry; max_H and willmore_energy from H of a flow that evolves nu and H, else from that of the
-  /// discrete surface (the H of BGN's scheme is a mean over the step); min_nu and max_nu of a flow's own nu.
+  /// discrete surface (the H of BGN's scheme is a mean over the step); min_nu and max_nu of a flow's own nu;
+  /// kappa_energy, 1/2 int |kappa|² of the discrete surface, which a flow's own H can drift away from.
   /// Snapshots have kappa of the discrete surface, too, and its nu and H where the flow has none.
   void record(int n, double t, const Field& x, std::vector<PointField> fields);
 
@@ -66,6 +70,7 @@ class RunRecorder {
 
   const SurfaceSpace& space_;
   SnapshotPlan plan_;
+  Energies energies_;
   std::size_t next_time_ = 0;
   std::optional<SnapshotCollection> collection_;
   DiscreteCurvature curvature_;

@@ -23,6 +23,8 @@ class DiscreteCurvature {
   const Field& nu() const { return nu_; }
   /// N x 1: kappa . nu in the nodes; 2/R on a sphere.
   const Field& H() const { return H_; }
+  /// Willmore energy of kappa, 1/2 int |kappa_h|². Integrated.
+  double willmore_energy() const { return 0.5 * M_.energy(kappa_); }
 
  private:
   const SurfaceSpace& space_;

@@ -27,6 +27,20 @@ TEST(Profile, OfTheDumbbell) {
   }
 }
 
+TEST(FittedRadii, OfASphereAndATorusAwayFromTheOrigin) {
+  Field ball = 1.3 * icosphere(1, 2).nodes;
+  ball.rowwise() += Eigen::RowVector3d(0.4, -2, 1);
+  EXPECT_NEAR(fitted_sphere_radius(ball), 1.3, 1e-12);
+  ball.col(0) *= 1.01;
+  EXPECT_GT(fitted_sphere_radius(ball), 1.302);
+
+  Field ring = torus_grid(1.7, 0.6, 24, 14).nodes;
+  ring.rowwise() += Eigen::RowVector3d(0.2, 0.1, -3);
+  const TorusRadii radii = fitted_torus_radii(ring);
+  EXPECT_NEAR(radii.major, 1.7, 1e-12);
+  EXPECT_NEAR(radii.minor, 0.6, 1e-12);
+}
+
 TEST(PinchTime, IsExactWhereTheSquaredNeckRadiusIsAParabola) {
   Series series;
   for (double t : {0.0, 0.05, 0.06, 0.068}) {

@@ -47,6 +47,16 @@ TEST_F(RunRecorderOnASphere, RecordsWhatTheFlowHasAndComputesTheRest) {
   EXPECT_TRUE(with_own.snapshots().empty());
 }
 
+TEST_F(RunRecorderOnASphere, TheEnergyOfTheSurfaceIsNotThatOfTheFlowsOwnCurvature) {
+  const SurfaceSpace space(mesh);
+  RunRecorder recorder(space, {}, RunRecorder::of_flow_and_surface);
+  const Field H = Field::Constant(space.dofs(), 1, 3);
+  recorder.record(0, 0, mesh.nodes, {{"nu", mesh.nodes}, {"H", H}});
+  const double pi = std::acos(-1.0);
+  EXPECT_NEAR(recorder.series()["willmore_energy"][0], 18 * pi, 1e-2);
+  EXPECT_NEAR(recorder.series()["kappa_energy"][0], 8 * pi, 0.1);
+}
+
 TEST_F(RunRecorderOnASphere, WritesSnapshotsAsPlanned) {
   const SurfaceSpace space(mesh);
   const auto run = [&](SnapshotPlan plan) {
