@@ -116,12 +116,12 @@ std::vector<Run> preset_runs(const std::string& preset) {
     for (const Case& entry : known_cases())
       for (const char* setting : {"paper", "adaptive", "relaxed"}) add(entry.name, setting, 0, end_time);
     add("small_ellipsoid", "implicit", 0, 0.1);
-    for (const int level : {2, 4}) add("small_ellipsoid", "relaxed", level, end_time);
+    for (const int level : {1, 2}) add("small_ellipsoid", "relaxed", level, end_time);
   } else {
     add("small_ellipsoid", "paper", 0, 0.1);
     add("small_ellipsoid", "implicit", 0, 0.1);
-    add("small_ellipsoid", "adaptive", 2, end_time);
-    for (const int level : {2, 3, 4}) add("small_ellipsoid", "relaxed", level, end_time);
+    add("small_ellipsoid", "adaptive", 0, end_time);
+    for (const int level : {0, 1, 2}) add("small_ellipsoid", "relaxed", level, end_time);
   }
   return runs;
 }
@@ -318,7 +318,7 @@ int main(int argc, char** argv) {
       "0: the "
       "published\n"
       "numbers of nodes, each further level half of them. No units.\n\n"
-      "Example: willmore_relaxation --surfaces small_ellipsoid --settings relaxed --levels 2-4 --output "
+      "Example: willmore_relaxation --surfaces small_ellipsoid --settings relaxed --levels 0-2 --output "
       "table.json";
   experiment.add_options = [&](CLI::App& app) {
     add_names_option(app, "--surfaces", names(known_cases()), "surfaces to start from", own.surfaces);
