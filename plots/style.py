@@ -62,6 +62,27 @@ def line_styles(count):
     return styles
 
 
+# Colours of Okabe and Ito, which colour-blind readers tell apart; dashes say it again in greyscale.
+BLUE, VERMILLION, GREEN, SKY_BLUE, ORANGE, PURPLE = "#0072B2", "#D55E00", "#009E73", "#56B4E9", "#E69F00", "#CC79A7"
+DASHES = {"solid": "-", "dashed": (0, (5, 2)), "dotted": (0, (1, 1.3)), "dash-dot": (0, (6, 1.8, 1.2, 1.8)),
+          "dash-dot-dot": (0, (6, 1.5, 1.2, 1.5, 1.2, 1.5)), "short": (0, (2.5, 1.5)), "long": (0, (10, 2)),
+          "sparse": (0, (1, 3))}
+
+
+def limit_line(axes, limit, label):
+    """A dashed line at the value that a quantity tends to, with its name on the right, on the side with more room."""
+    low, high = axes.get_ylim()
+    axes.axhline(limit, color="black", linewidth=0.8, linestyle=(0, (4, 2.5)), zorder=1.5, gid=f"limit {label}")
+    above = high - limit > limit - low
+    axes.annotate(label, (1, limit), (-3, 2.5 if above else -3), xycoords=("axes fraction", "data"),
+                  textcoords="offset points", ha="right", va="bottom" if above else "top", fontsize=8.5)
+
+
+def nodes_label(nodes):
+    """The number of nodes (degrees of freedom) of a mesh as it stands in legends and headings."""
+    return "$N = " + f"{nodes:,}".replace(",", "{,}") + "$"
+
+
 def log_ticks(axis, low, high, length):
     """Labels a horizontal logarithmic axis over [low, high], `length` points long, with round numbers.
 

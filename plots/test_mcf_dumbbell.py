@@ -9,6 +9,7 @@ import meshio
 import numpy as np
 
 import mcf_dumbbell
+from snapshots import Snapshots
 from table import SCHEMA, TableError
 from testing import lines_of, run_script, sphere
 
@@ -83,14 +84,14 @@ class Dumbbell(unittest.TestCase):
         self.assertTrue(good.heading(good.runs).endswith(r"; BGN: $N = 2{,}632$, $\tau = 0.003$"))
 
     def test_snapshots_are_those_within_half_a_step(self):
-        snapshots = mcf_dumbbell.Snapshots(dumbbell_row("kll"), "results")
+        snapshots = Snapshots(dumbbell_row("kll"), "results", "mcf_dumbbell")
         self.assertEqual([t for t, _ in snapshots.files][:2], [0, 0.006])
         self.assertEqual(snapshots.at(0.03)[1], "results/cells/mcf_dumbbell/kll_h1_cascade_0.003/surfaces_0010.vtu")
         self.assertIsNone(snapshots.at(0.032))
         self.assertAlmostEqual(snapshots.last()[0], 0.078)
         for entries in ([{"t": 0}], ["a.vtu"], [{"t": None, "file": "a.vtu"}], [{"t": 0, "file": 3}]):
             with self.assertRaisesRegex(TableError, "kll_h1_cascade_0.003: snapshots"):
-                mcf_dumbbell.Snapshots(dumbbell_row("kll", snapshots=entries), "results")
+                Snapshots(dumbbell_row("kll", snapshots=entries), "results", "mcf_dumbbell")
 
     def test_all_figures_are_there(self):
         self.assertEqual(list(self.figures), [f"kll19/fig13_{name}" for name in ("3", "3_good_start", "4", "5", "6")])
