@@ -5,11 +5,13 @@ Sizes are print sizes: a figure is WIDTH wide and is included in a page without 
 """
 import math
 import os
+import textwrap
 
 import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import ticker  # noqa: E402  (the backend comes first)
+from matplotlib.figure import Figure  # noqa: E402
 
 CM = 1 / 2.54
 WIDTH = 17 * CM  # text width of a page, in inches
@@ -69,13 +71,21 @@ DASHES = {"solid": "-", "dashed": (0, (5, 2)), "dotted": (0, (1, 1.3)), "dash-do
           "sparse": (0, (1, 3))}
 
 
-def limit_line(axes, limit, label):
+def limit_line(axes, limit, label, zorder=1.5):
     """A dashed line at the value that a quantity tends to, with its name on the right, on the side with more room."""
     low, high = axes.get_ylim()
-    axes.axhline(limit, color="black", linewidth=0.8, linestyle=(0, (4, 2.5)), zorder=1.5, gid=f"limit {label}")
+    axes.axhline(limit, color="black", linewidth=0.8, linestyle=(0, (4, 2.5)), zorder=zorder, gid=f"limit {label}")
     above = high - limit > limit - low
-    axes.annotate(label, (1, limit), (-3, 2.5 if above else -3), xycoords=("axes fraction", "data"),
+    axes.annotate(label, (1, limit), (-8, 2.5 if above else -3), xycoords=("axes fraction", "data"),
                   textcoords="offset points", ha="right", va="bottom" if above else "top", fontsize=8.5)
+
+
+def notice(paragraphs):
+    """A figure that says in words why there is no other."""
+    lines = [line for paragraph in paragraphs for line in textwrap.wrap(paragraph, 110)]
+    figure = Figure(figsize=(WIDTH, 0.3 + 0.18 * len(lines)))
+    figure.text(0.5, 0.5, "\n".join(lines), ha="center", va="center")
+    return figure
 
 
 def nodes_label(nodes):

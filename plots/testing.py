@@ -49,11 +49,17 @@ def run_script(stem, table, folder, *options):
 
 
 def data_lines(axes):
-    return [line for line in axes.lines if len(line.get_xdata()) and not is_reference(line)]
+    return [line for line in axes.lines if len(line.get_xdata()) and not (line.get_gid() or "").startswith("limit")
+            and not is_reference(line)]
 
 
 def is_reference(line):
     return (line.get_gid() or "").startswith("reference")
+
+
+def texts_of(figure):
+    """What the figure says outside of its axes."""
+    return " ".join(text.get_text() for text in figure.texts)
 
 
 def references(axes):

@@ -15,16 +15,16 @@ LEFT, RIGHT, GAP_X, BELOW = 0.50, 0.10, 0.50, 0.36
 PANEL_HEIGHT, HEADING, LINE = 1.62, 0.20, 0.165
 
 
-def panels(headings, labels, notes=()):
+def panels(headings, labels, notes=(), above=0.0):
     """(figure, axes[row][column]): an empty figure with one panel for each heading in rows of `headings`.
 
     A heading may be as long as the empty ones beside it allow. `labels`: {label: keyword arguments of `plot`}, the
-    legend. `notes`: lines at the foot.
+    legend. `notes`: lines at the foot. `above`: inches that stay free at the top.
     """
     columns = max(map(len, headings))
     legend_rows = math.ceil(len(labels) / 4)
     legend_columns = math.ceil(len(labels) / legend_rows)
-    top, bottom = legend_rows * LINE + 0.05, LINE * len(notes)
+    top, bottom = above + legend_rows * LINE + 0.05, LINE * len(notes)
     row_height = HEADING + PANEL_HEIGHT + BELOW
     height = top + len(headings) * row_height + bottom
     figure = Figure(figsize=(style.WIDTH, height))
@@ -43,8 +43,8 @@ def panels(headings, labels, notes=()):
     handles = [grid[0][0].plot([], [], label=label, **line_style)[0] for label, line_style in labels.items()]
     by_rows = [i for column in range(legend_columns) for i in range(column, len(handles), legend_columns)]
     figure.legend([handles[i] for i in by_rows], [list(labels)[i] for i in by_rows], loc="upper center",
-                  ncol=legend_columns, bbox_to_anchor=(0.5, 1.0), borderaxespad=0.1, labelspacing=0.25,
-                  columnspacing=1.6, handlelength=2.6)
+                  ncol=legend_columns, bbox_to_anchor=(0.5, 1 - above / height), borderaxespad=0.1,
+                  labelspacing=0.25, columnspacing=1.6, handlelength=2.6)
     add_notes(figure, notes)
     return figure, grid
 
@@ -65,12 +65,16 @@ def failure_notes(rows):
     return textwrap.wrap(f"{len(failed)} of {len(rows)} runs failed: {', '.join(failed[:6])}{more}.", 125)
 
 
-def draw_series(axes, row, name, line_style, span):
-    """Draws one quantity of a run; returns its values at times in `span`, those that are numbers."""
+def draw_series(axes, row, name, line_style, span, change=None):
+    """Draws one quantity of a run; returns its values at times in `span`, those that are numbers.
+
+    `change(values)`: what is drawn instead of the values, such as a distance from a limit.
+    """
     found = series(row, name)
     if found is None:
         return np.empty(0)
     t, values = found
+    values = change(values) if change else values
     axes.plot(t, values, **line_style)
     return values[(t >= span[0]) & (t <= span[1]) & np.isfinite(values)]
 
@@ -87,9 +91,11 @@ def scale(axes, values, logarithmic=False):
     low, high = values.min() - room, values.max() + room
     axes.set_ylim(*(10**np.array([low, high]) if logarithmic else (low, high)))
     for mantissas in ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 5, 7)) if logarithmic else ():
-        ticks = [m * 10.0**d for d in range(-8, 9) for m in mantissas if low <= math.log10(m) + d <= high]
+        ticks = [m * 10.0**d for d in range(-20, 21) for m in mantissas if low <= math.log10(m) + d <= high]
         if len(ticks) >= 4:
-            axes.yaxis.set_major_locator(ticker.FixedLocator(ticks))
-            axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+            plain = ticks[0] >= 1e-3 and ticks[-1] <= 1e5
+            axes.yaxis.set_major_locator(ticker.FixedLocator(ticks[::math.ceil(len(ticks) / 8)]))
+            axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}") if plain
+                                           else ticker.LogFormatterMathtext())
             axes.yaxis.set_minor_locator(ticker.NullLocator())
             return

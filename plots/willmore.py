@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the figures of Willmore flow share: the least energies, and errors beside the energy at the end.
+
+W = 1/2 int H^2: 8 pi for a sphere of any radius, 4 pi^2 for the Clifford torus.
+"""
+import math
+import statistics
+import textwrap
+
+import numpy as np
+
+import style
+from convergence import NORMS, QUANTITIES, Panel, checked_curves, curves_of, draw_panels, failure_notes, within_reach
+from table import succeeded
+
+SPHERE = (8 * math.pi, r"$8\pi$")
+TORUS = (4 * math.pi**2, r"$4\pi^2$")
+ERRORS = ("x", "nu", "H")
+ORDER = 2  # of the theory for quadratic elements: that of the degree
+
+
+def limit_of(surface):
+    """(W*, its name) of the surface that a flow from this one tends to."""
+    return TORUS if "torus" in surface else SPHERE
+
+
+def errors_and_energy(rows, norm, degree, limit):
+    """Figures 7.1, 7.3 and 7.4: errors of x, nu and H, and the Willmore energy at the end, against the mesh width.
+
+    A line for each step size. Runs that did not finish are missing and counted below; when there are no others, the
+    figure says just that.
+    """
+    if not any(map(succeeded, rows)):
+        return style.notice([f"None of {len(rows)} runs finished. The first, {rows[0].get('cell', '?')}: "
+                             f"{rows[0]['status']}."])
+    panels, skipped = [], {}
+    for quantity in ERRORS:
+        lines, skipped[quantity] = checked_curves(rows, quantity, norm, "h")
+        panels.append(Panel(QUANTITIES[quantity], lines, "h", degree))
+    energies, missing = curves_of(rows, lambda row: (row.get("values") or {}).get("willmore_energy"), "h")
+    panels.append(Panel(f"Willmore energy{_end(rows)}", energies, "h", limit=limit))
+    outside = sum((~within_reach(line.points[:, 1], limit[0])).sum() for line in energies)
+    notes = failure_notes(rows, skipped)
+    if missing or outside:
+        notes += textwrap.wrap(f"Energies not shown: {missing} missing, {outside} farther than half of {limit[1]} "
+                               f"from {limit[1]}.", 125)
+    return draw_panels(panels, f"error in {NORMS[norm]}", notes, columns=4)
+
+
+def _end(rows):
+    ends = [row["tau"] * row["steps"] for row in rows if succeeded(row) and row.get("steps")]
+    return f", $t = {statistics.median(ends):.3g}$" if ends else ""
+
+
+def finest(rows):
+    """The run on the mesh with most nodes, of these the one with the smallest step size."""
+    return max(rows, key=lambda row: (row["nodes"], -row["tau"]))
+
+
+def from_limit(limit):
+    """values -> |W - W*|, NaN where it has no logarithm."""
+    def change(values):
+        distance = np.abs(values - limit[0])
+        return np.where(distance > 0, distance, math.nan)
+    return change
