@@ -65,11 +65,12 @@ def surface_grid(boxes, labels, titles, heading, *, own_scales=False, foot=0.0):
     figure.text(LABEL_WIDTH / style.WIDTH, 1 - 0.03 / height, heading, va="top")
     for i, title in enumerate(titles):
         x = LABEL_WIDTH + i * (width + PANEL_GAP)
-        figure.text((x + width / 2) / style.WIDTH, 1 - (2 * TITLES - 0.05) / height, title, ha="center", va="bottom")
+        across, aligned = (x, "left") if own_scales else (x + width / 2, "center")
+        figure.text(across / style.WIDTH, 1 - (2 * TITLES - 0.05) / height, title, ha=aligned, va="bottom")
         if own_scales:
-            _scale_bar(figure, x + width, 2 * TITLES - 0.09, scales[i])
+            _scale_bar(figure, x + width, 2 * TITLES - 0.11, scales[i], 0.4)
     if not own_scales:
-        _scale_bar(figure, style.WIDTH, 0.11, scales[0])
+        _scale_bar(figure, style.WIDTH, 0.11, scales[0], 0.55)
     grid, y = [], height - 2 * TITLES
     for row, row_height, label in zip(boxes, heights, labels):
         y -= row_height
@@ -89,9 +90,9 @@ def surface_grid(boxes, labels, titles, heading, *, own_scales=False, foot=0.0):
     return figure, grid
 
 
-def _scale_bar(figure, right, below_top, scale):
+def _scale_bar(figure, right, below_top, scale, longest):
     """A bar that ends `right` inches from the left, `below_top` inches from the top; `scale` in inches per length."""
-    length = max((m * 10.0**d for d in range(-4, 5) for m in (1, 2, 5) if m * 10.0**d * scale <= 0.55), default=1.0)
+    length = max((m * 10.0**d for d in range(-4, 5) for m in (1, 2, 5) if m * 10.0**d * scale <= longest), default=1.0)
     y = 1 - below_top / figure.get_size_inches()[1]
     right, left = (right - 0.03) / style.WIDTH, (right - 0.03 - length * scale) / style.WIDTH
     figure.add_artist(Line2D([left, right], [y, y], color="black", linewidth=0.8, marker="|", markersize=5))

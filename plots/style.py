@@ -5,6 +5,7 @@ Sizes are print sizes: a figure is WIDTH wide and is included in a page without 
 """
 import math
 import os
+import re
 import textwrap
 
 import matplotlib
@@ -82,10 +83,16 @@ def limit_line(axes, limit, label, zorder=1.5):
 
 def notice(paragraphs):
     """A figure that says in words why there is no other."""
-    lines = [line for paragraph in paragraphs for line in textwrap.wrap(paragraph, 110)]
+    lines = [line for paragraph in paragraphs for line in wrap(paragraph, 110)]
     figure = Figure(figsize=(WIDTH, 0.3 + 0.18 * len(lines)))
     figure.text(0.5, 0.5, "\n".join(lines), ha="center", va="center")
     return figure
+
+
+def wrap(text, width=125):
+    """The text in lines of at most `width` characters, never broken inside a formula."""
+    formulas = re.sub(r"\$[^$]*\$", lambda match: match[0].replace(" ", "\0"), text)
+    return [line.replace("\0", " ") for line in textwrap.wrap(formulas, width)]
 
 
 def nodes_label(nodes):

@@ -13,12 +13,12 @@ import style
 import time_series
 from script import run
 from snapshots import Snapshots, Strip, evenly
-from surfaces import view
+from surfaces import read_surface, upright_view
 from table import TableError, has_series, series
 from willmore import finest
 
 STEM = "surface_diffusion"
-VIEW = view(25, 20, up=3)
+TILT = 20
 PICTURES = 6
 
 
@@ -31,8 +31,9 @@ def draw(table, folder):
     strip = None
     if pictured:
         files = evenly(Snapshots(finest(pictured), folder, STEM).files, PICTURES)
-        strip = Strip(files, VIEW, 0.98 * style.WIDTH)
-    yield "gallery/surface_diffusion", _figure(shown, strip, time_series.failure_notes(table["rows"]))
+        strip = Strip(files, upright_view(read_surface(files[0][1]), TILT), 0.98 * style.WIDTH)
+    yield "gallery/surface_diffusion", _figure(shown, strip, time_series.stopped_notes(shown)
+                                               + time_series.failure_notes(table["rows"]))
 
 
 def _figure(rows, strip, notes):

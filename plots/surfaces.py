@@ -59,6 +59,12 @@ def view(turn, tilt=0.0, up=1):
     return about_horizontal @ about_vertical @ across
 
 
+def upright_view(surface, tilt):
+    """The view with x3 upwards in which the longer one of the surface's horizontal axes is nearly across."""
+    lengths = np.ptp(surface.points, axis=0)
+    return view(25 if lengths[1] > lengths[0] else -65, tilt, up=3)
+
+
 def shape_functions(xi, count):
     """Linear (`count` 3) or quadratic (6) shape functions at points (m, 2) of the reference triangle: (m, count)."""
     b = np.column_stack([1 - xi.sum(axis=1), xi])

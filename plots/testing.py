@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 
+import meshio
 import numpy as np
 
 import mcf_sphere
@@ -101,3 +102,14 @@ def sphere(subdivisions, centre=(0, 0, 0)):
         if level < subdivisions:
             triangles = [t for i, j, k, a, b, c in quadratic for t in ((i, a, c), (a, j, b), (c, b, k), (a, b, c))]
     return Surface(np.array(points) + centre, np.array(quadratic), {})
+
+
+def write_surface(path, surface):
+    """A snapshot as the experiments write it."""
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    meshio.write(path, meshio.Mesh(surface.points, [("triangle6", surface.triangles)]))
+
+
+def limits_of(axes):
+    """Heights of the dashed lines that mark limits."""
+    return [line.get_ydata()[0] for line in axes.lines if (line.get_gid() or "").startswith("limit")]

@@ -1,28 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures of quantities over time: panels in rows with a heading each, one legend on top, notes below."""
 import math
-import textwrap
 
 import numpy as np
 from matplotlib import ticker
 from matplotlib.figure import Figure
 
 import style
-from table import has_series, series
+from table import has_series, series, succeeded
 
 # Inches: what surrounds the panels.
 LEFT, RIGHT, GAP_X, BELOW = 0.50, 0.10, 0.50, 0.36
 PANEL_HEIGHT, HEADING, LINE = 1.62, 0.20, 0.165
 
 
-def panels(headings, labels, notes=(), above=0.0):
+def panels(headings, labels, notes=(), above=0.0, abreast=4):
     """(figure, axes[row][column]): an empty figure with one panel for each heading in rows of `headings`.
 
     A heading may be as long as the empty ones beside it allow. `labels`: {label: keyword arguments of `plot`}, the
-    legend. `notes`: lines at the foot. `above`: inches that stay free at the top.
+    legend, at most `abreast` in a row. `notes`: lines at the foot. `above`: inches that stay free at the top.
     """
     columns = max(map(len, headings))
-    legend_rows = math.ceil(len(labels) / 4)
+    legend_rows = math.ceil(len(labels) / abreast)
     legend_columns = math.ceil(len(labels) / legend_rows)
     top, bottom = above + legend_rows * LINE + 0.05, LINE * len(notes)
     row_height = HEADING + PANEL_HEIGHT + BELOW
@@ -58,11 +57,19 @@ def add_notes(figure, notes):
 
 def failure_notes(rows):
     """The lines of a note that says which runs failed; none when all are there."""
-    failed = [str(row.get("cell", "?")) for row in rows if not has_series(row)]
-    if not failed:
-        return []
-    more = f" and {len(failed) - 6} more" if len(failed) > 6 else ""
-    return textwrap.wrap(f"{len(failed)} of {len(rows)} runs failed: {', '.join(failed[:6])}{more}.", 125)
+    failed = [row for row in rows if not has_series(row)]
+    return style.wrap(f"{len(failed)} of {len(rows)} runs failed: {_names(failed)}.") if failed else []
+
+
+def stopped_notes(rows):
+    """The lines of a note that says which runs stopped at a singularity; none when none did."""
+    stopped = [row for row in rows if has_series(row) and not succeeded(row)]
+    return style.wrap(f"Stopped early, as singular: {_names(stopped)}.") if stopped else []
+
+
+def _names(rows):
+    names = [str(row.get("cell", "?")) for row in rows]
+    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
 
 
 def draw_series(axes, row, name, line_style, span, change=None):

@@ -5,7 +5,6 @@ W = 1/2 int H^2: 8 pi for a sphere of any radius, 4 pi^2 for the Clifford torus.
 """
 import math
 import statistics
-import textwrap
 
 import numpy as np
 
@@ -42,8 +41,8 @@ def errors_and_energy(rows, norm, degree, limit):
     outside = sum((~within_reach(line.points[:, 1], limit[0])).sum() for line in energies)
     notes = failure_notes(rows, skipped)
     if missing or outside:
-        notes += textwrap.wrap(f"Energies not shown: {missing} missing, {outside} farther than half of {limit[1]} "
-                               f"from {limit[1]}.", 125)
+        notes += style.wrap(f"Energies not shown: {missing} missing, {outside} farther than half of {limit[1]} from "
+                            f"{limit[1]}.")
     return draw_panels(panels, f"error in {NORMS[norm]}", notes, columns=4)
 
 

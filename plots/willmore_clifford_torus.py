@@ -7,7 +7,6 @@ F; and figures/gallery/clifford_torus_stability.{pdf,png}: which runs finish wit
 """
 import math
 import re
-import textwrap
 
 from matplotlib.colors import LinearSegmentedColormap, LogNorm
 from matplotlib.figure import Figure
@@ -50,8 +49,8 @@ def stability_figure(rows, norm):
     variants = sorted({_variant(row) for row in rows})
     errors = [error for error in (_error(row, norm) for row in rows) if error]
     scale = LogNorm(min(errors), max(max(errors), 1.01 * min(errors))) if errors else None
-    notes = textwrap.wrap(f"Numbers: error of $x$ in {NORMS[norm]} over the whole run. Orange: the run failed, at the "
-                          "time given if it is known. Empty: not run.", 140)
+    notes = style.wrap(f"Numbers: error of $x$ in {NORMS[norm]} over the whole run. Orange: the run failed, at the "
+                       "time given if it is known. Empty: not run.", 140)
     table_height = HEADING + CELL * len(variants)
     height = len(tables) * table_height + AXIS + LINE * len(notes) + 0.04
     figure = Figure(figsize=(style.WIDTH, height))

@@ -5,8 +5,6 @@ Usage: python3 plots/willmore_competitors.py results/paper/willmore_competitors.
 Writes figures/gallery/willmore_competitors.{pdf,png}: errors of the surface over time where the exact solution is known,
 and how far the energy is from its limit.
 """
-import textwrap
-
 import numpy as np
 
 import style
@@ -111,10 +109,8 @@ def _notes(runs, rows):
            for (scheme, degree), (_, name) in _of(runs, surface, *ENERGIES).items() if name != ENERGIES[0]]
     if own:
         notes.append(f"With the scheme's own $H_h$ in place of $\\kappa_h$: {'; '.join(dict.fromkeys(own))}.")
-    stopped = [str(row.get("cell", "?")) for row in runs.values() if row["status"] != "ok"]
-    if stopped:
-        notes.append(f"Stopped early, as singular: {', '.join(stopped[:6])}.")
-    return [line for note in notes for line in textwrap.wrap(note, 140)] + time_series.failure_notes(rows)
+    return ([line for note in notes for line in style.wrap(note, 140)] + time_series.stopped_notes(runs.values())
+            + time_series.failure_notes(rows))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,7 @@ import style
 import time_series
 from script import run
 from snapshots import Snapshots, evenly, surface_grid
-from surfaces import draw_surface, extent, read_surface, view
+from surfaces import draw_surface, extent, read_surface, upright_view
 from table import TableError, has_series, series
 from willmore import finest, from_limit, limit_of
 
@@ -20,14 +20,15 @@ SURFACES = {"ellipsoid": "ellipsoid", "red_blood_cell": "red blood cell", "pertu
             "small_ellipsoid": "small ellipsoid", "evans_fung_cell": "Evans–Fung cell", "small_torus": "small torus",
             "small_torus_4": "small torus, four waves"}
 PAPER = ("ellipsoid", "red_blood_cell", "perturbed_torus")
-SETTINGS = {"paper": {"color": style.VERMILLION, "linewidth": 1.6}, "adaptive": {"color": style.BLUE},
-            "relaxed": {"color": style.GREEN}}
+# Thinner lines lie on top: lines that coincide all show.
+SETTINGS = {"paper": {"color": style.VERMILLION, "linewidth": 2.1}, "adaptive": {"color": style.BLUE, "linewidth": 1.3},
+            "relaxed": {"color": style.GREEN, "linewidth": 0.7}}
 ENERGIES = {"willmore_energy": (r"$W(H_h)$", style.DASHES["solid"]),
             "kappa_energy": (r"$W(\kappa_h)$", style.DASHES["dashed"])}
 KAPPA = r"$W = \frac{1}{2}\int H^2$. $H_h$ is computed by the flow, $\kappa_h$ is the mean curvature of the surface."
-VIEW = view(25, 32, up=3)  # the surfaces are round about x3
+TILT = 32
 ROWS = 6  # of surfaces on a page
-FOOT, PANEL, AXIS = 1.75, 1.15, 0.36  # inches: what is below the surfaces, the energies in it, and their time axis
+PANEL, AXIS = 1.15, 0.36  # inches: the energies below the surfaces, and their time axis
 
 
 def draw(table, folder):
@@ -52,9 +53,7 @@ def draw(table, folder):
 def _lost(rows, surfaces, settings):
     """Notes on the runs of a figure that failed or stopped early."""
     of_figure = [row for row in rows if row.get("surface") in surfaces and row.get("setting") in settings]
-    stopped = [str(row.get("cell", "?")) for row in of_figure if has_series(row) and row["status"] != "ok"]
-    notes = [f"Stopped early, as singular: {', '.join(stopped[:6])}."] if stopped else []
-    return notes + time_series.failure_notes(of_figure)
+    return time_series.stopped_notes(of_figure) + time_series.failure_notes(of_figure)
 
 
 def surfaces_figure(columns, notes):
@@ -63,25 +62,27 @@ def surfaces_figure(columns, notes):
     found = [[snapshots.at(t) for _, snapshots in columns.values()] for t in times]
     times, found = zip(*evenly([row for row in zip(times, found) if any(row[1])], ROWS))
     surfaces = [[file and read_surface(file[1]) for file in files] for files in found]
-    boxes = [[surface and extent(surface, VIEW) for surface in row] for row in surfaces]
+    views = [upright_view(next(filter(None, column)), TILT) for column in zip(*surfaces)]
+    boxes = [[surface and extent(surface, of_column) for surface, of_column in zip(row, views)] for row in surfaces]
     titles = [f"{SURFACES[surface]}, {style.nodes_label(row['nodes'])}" for surface, (row, _) in columns.items()]
     taus = sorted({rf"$\tau = {row['tau']:.3g}$" for row, _ in columns.values()})
-    foot = FOOT + time_series.LINE * len(notes)
+    below = AXIS + time_series.LINE * len(notes)
     figure, grid = surface_grid(boxes, [f"$t = {t:.3g}$" for t in times], titles, ", ".join(taus), own_scales=True,
-                                foot=foot)
+                                foot=PANEL + below)
     for axes_row, surface_row in zip(grid, surfaces):
-        for axes, surface in zip(axes_row, surface_row):
+        for axes, surface, of_column in zip(axes_row, surface_row, views):
             if surface is not None:
-                draw_surface(axes, surface, VIEW, facets_per_side=2, linewidth=0.12)
+                draw_surface(axes, surface, of_column, facets_per_side=2, linewidth=0.12)
     width, height = figure.get_size_inches()
     for i, (above, (surface, (row, _))) in enumerate(zip(grid[0], columns.items())):
         box = above.get_position()
-        left, right = box.x0 + 0.2 / width, box.x1 - 0.04 / width
-        axes = figure.add_axes([left, (foot - FOOT + AXIS) / height, right - left, PANEL / height])
+        left, right = box.x0 + 0.3 / width, box.x1 - 0.04 / width
+        axes = figure.add_axes([left, below / height, right - left, PANEL / height])
         _draw_energy(axes, surface, row)
         if i == 0:
             axes.set_ylabel("Willmore energy", labelpad=2)
-            axes.legend(loc="upper right", borderaxespad=0.3, handlelength=2.2, labelspacing=0.2)
+            if any(series(row, name) for name in ENERGIES):
+                axes.legend(loc="upper right", borderaxespad=0.3, handlelength=2.2, labelspacing=0.2)
     time_series.add_notes(figure, notes)
     return figure
 
@@ -106,7 +107,7 @@ def energies_figure(runs, notes):
     legend |= {label: {"color": "black", "linestyle": dashes} for label, dashes in ENERGIES.values()}
     headings = [f"{SURFACES[surface]}, $W^* = {limit_of(surface)[1].strip('$')}$" for surface in surfaces]
     rows = [headings[i:i + 3] for i in range(0, len(headings), 3)]
-    figure, grid = time_series.panels(rows, legend, [KAPPA, *notes])
+    figure, grid = time_series.panels(rows, legend, [KAPPA, *notes], abreast=5)
     all_axes = [axes for row in grid for axes in row]
     for surface, axes in zip(surfaces, all_axes):
         values, end = [], 0
