@@ -72,7 +72,7 @@ DASHES = {"solid": "-", "dashed": (0, (5, 2)), "dotted": (0, (1, 1.3)), "dash-do
           "sparse": (0, (1, 3))}
 
 
-def limit_line(axes, limit, label, zorder=1.5):
+def limit_line(axes, limit, label="", zorder=1.5):
     """A dashed line at the value that a quantity tends to, with its name on the right, on the side with more room."""
     low, high = axes.get_ylim()
     axes.axhline(limit, color="black", linewidth=0.8, linestyle=(0, (4, 2.5)), zorder=zorder, gid=f"limit {label}")
@@ -93,6 +93,13 @@ def wrap(text, width=125):
     """The text in lines of at most `width` characters, never broken inside a formula."""
     formulas = re.sub(r"\$[^$]*\$", lambda match: match[0].replace(" ", "\0"), text)
     return [line.replace("\0", " ") for line in textwrap.wrap(formulas, width)]
+
+
+def scientific(value, digits=1):
+    """A number as digits times a power of ten, with `digits` after the point; 1 times is left out."""
+    mantissa, exponent = f"{value:.{digits}e}".split("e")
+    times = "" if float(mantissa) == 1 and digits == 0 else rf"{mantissa}\cdot "
+    return f"${times}10^{{{int(exponent)}}}$"
 
 
 def nodes_label(nodes):

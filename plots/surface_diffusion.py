@@ -20,6 +20,7 @@ from willmore import finest
 STEM = "surface_diffusion"
 TILT = 20
 PICTURES = 6
+AREA = "area; dashed: of the sphere of the same volume"
 
 
 def draw(table, folder):
@@ -40,11 +41,11 @@ def _figure(rows, strip, notes):
     rows = sorted(rows, key=lambda row: (row["nodes"], -row["tau"]))
     labels = [rf"{style.nodes_label(row['nodes'])}, $\tau = {row['tau']:.3g}$" for row in rows]
     lines = style.line_styles(len(rows))
-    above = strip.height + 0.1 if strip else 0.0
-    figure, ((left, right),) = time_series.panels([["area", "relative change of the volume"]],
+    above = strip.height + 0.14 if strip else 0.0
+    figure, ((left, right),) = time_series.panels([[AREA, "relative change of the volume"]],
                                                   dict(zip(labels, lines)), notes, above)
     if strip:
-        strip.draw(figure, 0.01 * style.WIDTH, figure.get_size_inches()[1] - strip.height, facets_per_side=2,
+        strip.draw(figure, 0.01 * style.WIDTH, figure.get_size_inches()[1] - strip.height - 0.04, facets_per_side=2,
                    linewidth=0.12)
     areas, drifts, end = [], [], 0
     for i, (row, line) in enumerate(zip(rows, lines)):
@@ -58,7 +59,7 @@ def _figure(rows, strip, notes):
     sphere = [(36 * math.pi * volume**2)**(1 / 3) for volume in volumes[:1] if volume > 0]
     time_series.scale(left, np.concatenate([*areas, sphere]))
     for area in sphere:
-        style.limit_line(left, area, "sphere of the same volume")
+        style.limit_line(left, area)
     time_series.scale(right, np.concatenate(drifts), logarithmic=True)
     for axes in (left, right):
         axes.set_xlim(0, end or 1)
@@ -68,8 +69,7 @@ def _figure(rows, strip, notes):
 
 def _drift(volume):
     """|V(t) / V(0) - 1|, NaN where it has no logarithm."""
-    drift = np.abs(volume / volume[0] - 1)
-    return np.where(drift > 0, drift, math.nan)
+    return time_series.positive(np.abs(volume / volume[0] - 1))
 
 
 if __name__ == "__main__":

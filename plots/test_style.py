@@ -25,6 +25,29 @@ class Style(unittest.TestCase):
             self.assertTrue(len(ticks) >= 2 and low <= ticks[0] and ticks[-1] <= high)
             self.assertGreater(120 * np.diff(np.log(ticks)).min() / math.log(high / low), 15)
 
+    def test_lines_are_not_broken_inside_formulas(self):
+        lines = style.wrap("one " * 5 + r"$N = 1{,}914$, $\tau = 0.025$ " + "two " * 5, 24)
+        self.assertGreater(len(lines), 2)
+        self.assertTrue(all(line.count("$") % 2 == 0 and len(line) <= 24 for line in lines))
+        self.assertIn("$N = 1{,}914$", " ".join(lines))
+
+    def test_numbers_are_written_as_powers_of_ten(self):
+        self.assertEqual([style.scientific(1.26e-2), style.scientific(1e-6, 0), style.scientific(3e5, 0)],
+                         [r"$1.3\cdot 10^{-2}$", "$10^{-6}$", r"$3\cdot 10^{5}$"])
+        self.assertEqual(style.nodes_label(12000), "$N = 12{,}000$")
+
+    def test_a_limit_has_its_name_where_there_is_room(self):
+        for ylim, side in (((0, 10), "bottom"), ((-10, 3), "top")):
+            axes = Figure().add_axes([0, 0, 1, 1])
+            axes.set_ylim(ylim)
+            style.limit_line(axes, 2, "$L$")
+            self.assertEqual((axes.texts[0].get_text(), axes.texts[0].get_va()), ("$L$", side))
+            self.assertEqual(axes.lines[0].get_ydata()[0], 2)
+
+    def test_a_notice_is_as_high_as_its_lines(self):
+        heights = [style.notice(["why " * n]).get_size_inches()[1] for n in (1, 100)]
+        self.assertLess(*heights)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -30,6 +30,15 @@ class Surfaces(unittest.TestCase):
         np.testing.assert_allclose(view(0)[0], [0, 0, 1], atol=1e-15)  # x3 to the right
         self.assertLess(view(18)[2] @ [0, 0, 1], -0.1)  # x3 also goes away: its lower end is shown
 
+    def test_upright_views_have_x3_upwards_and_the_longer_axis_across(self):
+        ball = sphere(1)
+        for axes, longest in (([2, 1, 1], 0), ([1, 2, 1], 1)):
+            rotation = surfaces.upright_view(Surface(ball.points * axes, ball.triangles, {}), 30)
+            np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-15)
+            self.assertGreater(rotation[1] @ [0, 0, 1], 0.8)
+            self.assertGreater(rotation[2] @ [0, 0, 1], 0.4)  # seen from above
+            self.assertGreater(abs(rotation[0, longest]), 0.9)
+
     def test_the_lattice_fills_the_reference_triangle(self):
         for n in (1, 2, 5):
             points, triangles, pieces = surfaces.lattice(n)

@@ -58,7 +58,7 @@ class Competitors(unittest.TestCase):
             self.assertEqual((len(lines_of(axes)), axes.get_yscale(), axes.get_xlabel()), (5, "log", "$t$"))
         self.assertIn(r"Clifford torus, $W^* = 4\pi^2$", texts_of(self.figure))
         error = competitor_row("kll21", "sphere", "2")["series"]["x_nodal_H1"]
-        np.testing.assert_array_equal(lines_of(upper[0])[0].get_ydata(), error)
+        np.testing.assert_array_equal(lines_of(upper[0])[0].get_ydata(), [math.nan, *error[1:]])
         energy = np.array(competitor_row("bgn", "ellipsoid", "1")["series"]["kappa_energy"])
         np.testing.assert_allclose(lines_of(lower[2])[-1].get_ydata(), energy - 8 * math.pi)
 
@@ -75,7 +75,10 @@ class Competitors(unittest.TestCase):
 
     def test_notes_say_mesh_and_step_size(self):
         notes = texts_of(self.figure)
-        self.assertIn(r"Sphere: $N = 1{,}914$, $\tau = 0.025$ (KLL, quadratic; Dziuk, quadratic; BGN, quadratic)", notes)
+        self.assertIn(r"Sphere: $N = 1{,}914$, $\tau = 0.025$ (quadratic);", notes)
+        coarser = [{**row, "nodes": 500} if row["cell"] == "bgn_sphere_p1" else row for row in self.table["rows"]]
+        self.assertIn("(Dziuk, linear); $N = 500$", texts_of(draw(coarser)))
+        self.assertIn("(BGN, linear).", texts_of(draw(coarser)))
         alike = [row for row in self.table["rows"] if row["degree"] == "2"]
         self.assertIn(r"Ellipsoid: $N = 1{,}914$, $\tau = 0.025$.", texts_of(draw(alike)))
 

@@ -75,7 +75,7 @@ def _names(rows):
 def draw_series(axes, row, name, line_style, span, change=None):
     """Draws one quantity of a run; returns its values at times in `span`, those that are numbers.
 
-    `change(values)`: what is drawn instead of the values, such as a distance from a limit.
+    `change(values)`: what is drawn instead of the values, such as the distance from a limit.
     """
     found = series(row, name)
     if found is None:
@@ -84,6 +84,11 @@ def draw_series(axes, row, name, line_style, span, change=None):
     values = change(values) if change else values
     axes.plot(t, values, **line_style)
     return values[(t >= span[0]) & (t <= span[1]) & np.isfinite(values)]
+
+
+def positive(values):
+    """The values, NaN where they have no logarithm: nothing is drawn there."""
+    return np.where(values > 0, values, math.nan)
 
 
 def scale(axes, values, logarithmic=False):
@@ -102,7 +107,7 @@ def scale(axes, values, logarithmic=False):
         if len(ticks) >= 4:
             plain = ticks[0] >= 1e-3 and ticks[-1] <= 1e5
             axes.yaxis.set_major_locator(ticker.FixedLocator(ticks[::math.ceil(len(ticks) / 8)]))
-            axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}") if plain
-                                           else ticker.LogFormatterMathtext())
+            axes.yaxis.set_major_formatter(ticker.FuncFormatter(
+                lambda value, _: f"{value:g}" if plain else style.scientific(value, 0)))
             axes.yaxis.set_minor_locator(ticker.NullLocator())
             return

@@ -11,6 +11,7 @@ import numpy as np
 import style
 from convergence import NORMS, QUANTITIES, Panel, checked_curves, curves_of, draw_panels, failure_notes, within_reach
 from table import succeeded
+from time_series import positive
 
 SPHERE = (8 * math.pi, r"$8\pi$")
 TORUS = (4 * math.pi**2, r"$4\pi^2$")
@@ -58,7 +59,4 @@ def finest(rows):
 
 def from_limit(limit):
     """values -> |W - W*|, NaN where it has no logarithm."""
-    def change(values):
-        distance = np.abs(values - limit[0])
-        return np.where(distance > 0, distance, math.nan)
-    return change
+    return lambda values: positive(np.abs(values - limit[0]))

@@ -80,16 +80,11 @@ def _draw_table(axes, rows, taus, variants, norm, scale):
         column, line = taus.index(_rounded(row["tau"])), variants.index(_variant(row))
         error = _error(row, norm)
         look = {"facecolor": ACCURACY(scale(error)) if error else "0.93", "edgecolor": "none"}
-        text, colour = (_power_of_ten(error) if error else "done"), "black"
+        text, colour = (style.scientific(error) if error else "done"), "black"
         if not succeeded(row):
             look, text, colour = FAILED, _failure(row), "#8A3B00"
         axes.add_patch(_box(column, line, look))
         axes.text(column, line, text, ha="center", va="center", fontsize=7.5, color=colour, gid=row.get("cell"))
-
-
-def _power_of_ten(value):
-    digits, exponent = f"{value:.1e}".split("e")
-    return rf"${digits}\cdot 10^{{{int(exponent)}}}$"
 
 
 def _box(column, line, look):

@@ -71,7 +71,7 @@ def _figure(panels, errors, energies, notes):
     for found, surfaces, label, axes_row in zip((errors, energies), panels, labels, _aligned(grid, panels)):
         for i, (surface, axes) in enumerate(zip(surfaces, axes_row)):
             values, end = [], 0
-            change = None if found is errors else from_limit(limit_of(surface))
+            change = time_series.positive if found is errors else from_limit(limit_of(surface))
             for variant, (row, name) in found[surface].items():
                 values.append(time_series.draw_series(axes, row, name, _line(*variant), (0, np.inf), change))
                 end = max(end, max(row["series"]["t"]))
@@ -92,6 +92,17 @@ def _aligned(grid, panels):
     return [next(rows) if surfaces else [] for surfaces in panels]
 
 
+def _which(variants, every):
+    """Which of `every` (scheme, degree) these are, as short as can be said."""
+    if len(variants) == len(every):
+        return ""
+    for part, names in ((1, DEGREES), (0, SCHEMES)):
+        kinds = {variant[part] for variant in variants}
+        if len(variants) == sum(variant[part] in kinds for variant in every):
+            return f" ({', '.join(name for key, (name, _) in names.items() if key in kinds)})"
+    return f" ({'; '.join(_label(*variant) for variant in variants)})"
+
+
 def _notes(runs, rows):
     """Mesh and step size of the runs, what the energies are, and which runs are missing."""
     notes = []
@@ -100,16 +111,17 @@ def _notes(runs, rows):
         for (of, *variant), row in runs.items():
             if of == surface:
                 setting = rf"{style.nodes_label(row['nodes'])}, $\tau = {row['tau']:.3g}$"
-                settings.setdefault(setting, []).append(_label(*variant))
+                settings.setdefault(setting, []).append(tuple(variant))
         if settings:
-            texts = [text + (f" ({'; '.join(names)})" if len(settings) > 1 else "") for text, names in settings.items()]
+            every = [variant for variants in settings.values() for variant in variants]
+            texts = [setting + _which(variants, every) for setting, variants in settings.items()]
             name = SURFACES[surface]
             notes.append(f"{name[0].upper()}{name[1:]}: {'; '.join(texts)}.")
     own = [_label(scheme, degree) for surface in SURFACES
            for (scheme, degree), (_, name) in _of(runs, surface, *ENERGIES).items() if name != ENERGIES[0]]
     if own:
         notes.append(f"With the scheme's own $H_h$ in place of $\\kappa_h$: {'; '.join(dict.fromkeys(own))}.")
-    return ([line for note in notes for line in style.wrap(note, 140)] + time_series.stopped_notes(runs.values())
+    return ([line for note in notes for line in style.wrap(note)] + time_series.stopped_notes(runs.values())
             + time_series.failure_notes(rows))
 
 
