@@ -234,15 +234,9 @@ def _scale_and_reference(all_axes, panels):
             _scale_to_limit(axes, panel)
 
 
-def within_reach(values, limit):
-    """Which values are so close to their limit that its axis shows them: a run that goes astray hides no other."""
-    return np.abs(np.asarray(values) - limit) <= 0.5 * abs(limit)
-
-
 def _scale_to_limit(axes, panel):
     limit, label = panel.limit
-    values = np.concatenate([curve.points[:, 1] for curve in panel.curves])
-    values = np.append(values[within_reach(values, limit)], limit)
+    values = np.append(np.concatenate([curve.points[:, 1] for curve in panel.curves]), limit)
     room = 0.1 * max(np.ptp(values), 1e-3 * abs(limit))
     axes.set_yscale("linear")
     axes.set_ylim(values.min() - room, values.max() + room)

@@ -120,7 +120,7 @@ class Strip:
         return max(box[3] - box[2] for box in self.boxes)
 
     def draw(self, figure, left, bottom, **options):
-        """Draws the strip with its lower left corner there; `options` of draw_surface, `colours(surface)` among them."""
+        """Draws the strip with its lower left corner there; `options` of draw_surface, but `colours(surface)`."""
         colours = options.pop("colours", lambda surface: None)
         height, x = figure.get_size_inches()[1], left + self.left
         for t, surface, box in zip(self.times, self.surfaces, self.boxes):

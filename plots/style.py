@@ -95,10 +95,10 @@ def wrap(text, width=125):
     return [line.replace("\0", " ") for line in textwrap.wrap(formulas, width)]
 
 
-def scientific(value, digits=1):
-    """A number as digits times a power of ten, with `digits` after the point; 1 times is left out."""
-    mantissa, exponent = f"{value:.{digits}e}".split("e")
-    times = "" if float(mantissa) == 1 and digits == 0 else rf"{mantissa}\cdot "
+def power_of_ten(value):
+    """A number with two digits at most times a power of ten; 1 times is left out."""
+    mantissa, exponent = f"{value:.1e}".split("e")
+    times = "" if mantissa == "1.0" else rf"{float(mantissa):g}\cdot "
     return f"${times}10^{{{int(exponent)}}}$"
 
 

@@ -20,6 +20,7 @@ from willmore import finest
 STEM = "surface_diffusion"
 TILT = 20
 PICTURES = 6
+VOLUME = "relative change of the volume, $|V(t) / V(0) - 1|$"
 AREA = "area; dashed: of the sphere of the same volume"
 
 
@@ -42,7 +43,7 @@ def _figure(rows, strip, notes):
     labels = [rf"{style.nodes_label(row['nodes'])}, $\tau = {row['tau']:.3g}$" for row in rows]
     lines = style.line_styles(len(rows))
     above = strip.height + 0.14 if strip else 0.0
-    figure, ((left, right),) = time_series.panels([[AREA, "relative change of the volume"]],
+    figure, ((left, right),) = time_series.panels([[AREA, VOLUME]],
                                                   dict(zip(labels, lines)), notes, above)
     if strip:
         strip.draw(figure, 0.01 * style.WIDTH, figure.get_size_inches()[1] - strip.height - 0.04, facets_per_side=2,
@@ -63,7 +64,6 @@ def _figure(rows, strip, notes):
     time_series.scale(right, np.concatenate(drifts), logarithmic=True)
     for axes in (left, right):
         axes.set_xlim(0, end or 1)
-    right.set_ylabel("$|V(t) / V(0) - 1|$", labelpad=2)
     return figure
 
 

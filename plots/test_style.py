@@ -32,7 +32,7 @@ class Style(unittest.TestCase):
         self.assertIn("$N = 1{,}914$", " ".join(lines))
 
     def test_numbers_are_written_as_powers_of_ten(self):
-        self.assertEqual([style.scientific(1.26e-2), style.scientific(1e-6, 0), style.scientific(3e5, 0)],
+        self.assertEqual([style.power_of_ten(value) for value in (1.26e-2, 1e-6, 2.9999999e5)],
                          [r"$1.3\cdot 10^{-2}$", "$10^{-6}$", r"$3\cdot 10^{5}$"])
         self.assertEqual(style.nodes_label(12000), "$N = 12{,}000$")
 

@@ -40,7 +40,9 @@ class TimeSeries(unittest.TestCase):
 
     def test_logarithmic_axes_have_readable_numbers(self):
         for low, high, expected in ((0.3, 200, ["1", "10", "100"]), (1e-9, 1e-5, ["$10^{-9}$", "$10^{-5}$"]),
-                                    (2e-6, 5e-5, [r"$2\cdot 10^{-5}$"]), (1e-14, 1e2, ["$10^{-14}$", "$10^{-2}$"])):
+                                    (2.3e-6, 5e-5, ["$10^{-5}$", r"$5\cdot 10^{-6}$"]),
+                                    (1.2e-6, 8e-6, [r"$1.5\cdot 10^{-6}$"]), (2e-7, 5e-5, ["$10^{-6}$", "$10^{-5}$"]),
+                                    (1e-14, 1e2, ["$10^{-14}$", "$10^{-2}$"])):
             axes = Figure().add_axes([0, 0, 1, 1])
             time_series.scale(axes, np.array([low, high, math.nan]), logarithmic=True)
             labels = [axes.yaxis.get_major_formatter()(tick, 0) for tick in axes.yaxis.get_majorticklocs()]

@@ -95,6 +95,8 @@ class WillmoreSphere(unittest.TestCase):
         self.assertIn("2 of 30 runs failed: convergence_none_h0_tau0, convergence_none_h0_tau1.", texts_of(figure))
         self.assertIn(r"Energies not shown: 2 missing, 1 farther than half of $8\pi$ from $8\pi$.", texts_of(figure))
         self.assertLess(figure.axes[3].get_ylim()[1], 12 * math.pi)
+        self.assertEqual([len(line.get_xdata()) for line in data_lines(figure.axes[3])], [4, 4, 4, 4, 4, 5])
+        self.assertEqual([len(line.get_xdata()) for line in data_lines(figure.axes[0])], [4, 4, 5, 5, 5, 5])
         for row in table["rows"]:
             if row["projection"] == "none":
                 row.update(status="failed: step 3: why", errors={}, values={})

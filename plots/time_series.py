@@ -10,7 +10,7 @@ import style
 from table import has_series, series, succeeded
 
 # Inches: what surrounds the panels.
-LEFT, RIGHT, GAP_X, BELOW = 0.50, 0.10, 0.50, 0.36
+LEFT, RIGHT, GAP_X, BELOW = 0.56, 0.10, 0.50, 0.36
 PANEL_HEIGHT, HEADING, LINE = 1.62, 0.20, 0.165
 
 
@@ -102,12 +102,18 @@ def scale(axes, values, logarithmic=False):
     room = max(0.06 * np.ptp(values), 0.01)
     low, high = values.min() - room, values.max() + room
     axes.set_ylim(*(10**np.array([low, high]) if logarithmic else (low, high)))
-    for mantissas in ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 5, 7)) if logarithmic else ():
+    if logarithmic:
+        _label_logarithmic(axes.yaxis, low, high)
+
+
+def _label_logarithmic(axis, low, high):
+    """At least four round numbers between 10^low and 10^high; powers of ten are wide, so two of them are enough."""
+    plain = low >= -3.3 and high <= 5
+    for mantissas in ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 5, 7)):
         ticks = [m * 10.0**d for d in range(-20, 21) for m in mantissas if low <= math.log10(m) + d <= high]
-        if len(ticks) >= 4:
-            plain = ticks[0] >= 1e-3 and ticks[-1] <= 1e5
-            axes.yaxis.set_major_locator(ticker.FixedLocator(ticks[::math.ceil(len(ticks) / 8)]))
-            axes.yaxis.set_major_formatter(ticker.FuncFormatter(
-                lambda value, _: f"{value:g}" if plain else style.scientific(value, 0)))
-            axes.yaxis.set_minor_locator(ticker.NullLocator())
+        if len(ticks) >= (2 if mantissas == (1,) and not plain else 4):
+            axis.set_major_locator(ticker.FixedLocator(ticks[::math.ceil(len(ticks) / 8)]))
+            axis.set_major_formatter(ticker.FuncFormatter(
+                lambda value, _: f"{value:g}" if plain else style.power_of_ten(value)))
+            axis.set_minor_locator(ticker.NullLocator())
             return

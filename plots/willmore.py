@@ -9,14 +9,13 @@ import statistics
 import numpy as np
 
 import style
-from convergence import NORMS, QUANTITIES, Panel, checked_curves, curves_of, draw_panels, failure_notes, within_reach
+from convergence import NORMS, QUANTITIES, Panel, checked_curves, curves_of, draw_panels, failure_notes
 from table import succeeded
 from time_series import positive
 
 SPHERE = (8 * math.pi, r"$8\pi$")
 TORUS = (4 * math.pi**2, r"$4\pi^2$")
 ERRORS = ("x", "nu", "H")
-ORDER = 2  # of the theory for quadratic elements: that of the degree
 
 
 def limit_of(surface):
@@ -24,11 +23,16 @@ def limit_of(surface):
     return TORUS if "torus" in surface else SPHERE
 
 
+def within_reach(values, limit):
+    """Which energies are so close to their limit that they are shown: a run that goes astray hides no other."""
+    return np.abs(values - limit) <= 0.5 * limit
+
+
 def errors_and_energy(rows, norm, degree, limit):
     """Figures 7.1, 7.3 and 7.4: errors of x, nu and H, and the Willmore energy at the end, against the mesh width.
 
-    A line for each step size. Runs that did not finish are missing and counted below; when there are no others, the
-    figure says just that.
+    A line for each step size, and the theory's order, which is the degree. Runs that did not finish are missing and
+    counted below; when there are no others, the figure says just that.
     """
     if not any(map(succeeded, rows)):
         return style.notice([f"None of {len(rows)} runs finished. The first, {rows[0].get('cell', '?')}: "
@@ -38,8 +42,11 @@ def errors_and_energy(rows, norm, degree, limit):
         lines, skipped[quantity] = checked_curves(rows, quantity, norm, "h")
         panels.append(Panel(QUANTITIES[quantity], lines, "h", degree))
     energies, missing = curves_of(rows, lambda row: (row.get("values") or {}).get("willmore_energy"), "h")
+    outside = 0
+    for line in energies:
+        near = within_reach(line.points[:, 1], limit[0])
+        line.points, outside = line.points[near], outside + (~near).sum()
     panels.append(Panel(f"Willmore energy{_end(rows)}", energies, "h", limit=limit))
-    outside = sum((~within_reach(line.points[:, 1], limit[0])).sum() for line in energies)
     notes = failure_notes(rows, skipped)
     if missing or outside:
         notes += style.wrap(f"Energies not shown: {missing} missing, {outside} farther than half of {limit[1]} from "

@@ -49,8 +49,8 @@ def stability_figure(rows, norm):
     variants = sorted({_variant(row) for row in rows})
     errors = [error for error in (_error(row, norm) for row in rows) if error]
     scale = LogNorm(min(errors), max(max(errors), 1.01 * min(errors))) if errors else None
-    notes = style.wrap(f"Numbers: error of $x$ in {NORMS[norm]} over the whole run. Orange: the run failed, at the "
-                       "time given if it is known. Empty: not run.", 140)
+    notes = style.wrap(f"Blue: error of $x$ in {NORMS[norm]}. Orange: the run failed, at the time $t$ if known. Empty: "
+                       "not run.")
     table_height = HEADING + CELL * len(variants)
     height = len(tables) * table_height + AXIS + LINE * len(notes) + 0.04
     figure = Figure(figsize=(style.WIDTH, height))
@@ -80,7 +80,7 @@ def _draw_table(axes, rows, taus, variants, norm, scale):
         column, line = taus.index(_rounded(row["tau"])), variants.index(_variant(row))
         error = _error(row, norm)
         look = {"facecolor": ACCURACY(scale(error)) if error else "0.93", "edgecolor": "none"}
-        text, colour = (style.scientific(error) if error else "done"), "black"
+        text, colour = (style.power_of_ten(error) if error else "done"), "black"
         if not succeeded(row):
             look, text, colour = FAILED, _failure(row), "#8A3B00"
         axes.add_patch(_box(column, line, look))
@@ -107,7 +107,7 @@ def _meshes(rows):
     for (level, mesh), group in sorted(groups.items()):
         nodes = [row["nodes"] for row in group if succeeded(row)]
         size = style.nodes_label(nodes[0]) if nodes else f"mesh {level}"
-        tables[f"{size}, {mesh} mesh" if mesh else size] = group
+        tables.setdefault(f"{size}, {mesh} mesh" if mesh else size, []).extend(group)
     return tables
 
 
