@@ -27,13 +27,23 @@ class Snapshots:
             raise TableError(f"{row.get('cell', '?')}: snapshots are no list of {{t, file}}") from error
         self.tau = row["tau"]
 
-    def at(self, t):
-        """The snapshot closest to t, at most half a step away, or None."""
-        near = [file for file in self.files if abs(file[0] - t) <= 0.501 * self.tau]
+    def at(self, t, tau=None):
+        """The snapshot closest to t, at most half a step `tau` (the run's own by default) away, or None."""
+        near = [file for file in self.files if abs(file[0] - t) <= 0.501 * (tau or self.tau)]
         return min(near, key=lambda file: abs(file[0] - t), default=None)
 
     def last(self):
         return self.files[-1] if self.files else None
+
+
+def shared_times(runs):
+    """[(t, the snapshot of each run or None)], the times of runs whose steps differ taken together."""
+    tau = max(run.tau for run in runs)
+    times = []
+    for t in sorted(t for run in runs for t, _ in run.files):
+        if not times or t - times[-1] > 0.501 * tau:
+            times.append(t)
+    return [(t, [run.at(t, tau) for run in runs]) for t in times]
 
 
 def evenly(items, most):

@@ -7,18 +7,24 @@ import numpy as np
 from matplotlib.figure import Figure
 
 import style
-from snapshots import Strip, evenly, surface_grid
+from snapshots import Snapshots, Strip, evenly, shared_times, surface_grid
 from surfaces import Surface, view
 from testing import sphere, texts_of, write_surface
 
 WIDE, TALL = (-2, 2, -1, 1), (-0.1, 0.1, -0.3, 0.3)
 
 
-class Snapshots(unittest.TestCase):
+class Arrangement(unittest.TestCase):
     def test_few_of_many_with_both_ends(self):
         self.assertEqual(evenly(range(5), 6), [0, 1, 2, 3, 4])
         self.assertEqual(evenly(range(11), 6), [0, 2, 4, 6, 8, 10])
         self.assertEqual((len(evenly(range(100), 6)), evenly(range(100), 6)[-1]), (6, 99))
+
+    def test_times_of_runs_with_other_steps_are_taken_together(self):
+        fine, coarse = (Snapshots({"cell": "a", "tau": tau, "snapshots": [{"t": t, "file": "f"} for t in times]}, "", "")
+                        for tau, times in ((0.01, (0, 0.5, 1)), (0.03, (0, 0.51, 0.99, 2))))
+        found = [(t, [file and file[0] for file in files]) for t, files in shared_times([fine, coarse])]
+        self.assertEqual(found, [(0, [0, 0]), (0.5, [0.5, 0.51]), (0.99, [1, 0.99]), (2, [None, 2])])
 
     def test_columns_have_one_scale_or_their_own(self):
         boxes = [[WIDE, TALL], [WIDE, None]]

@@ -10,7 +10,7 @@ import numpy as np
 import style
 import time_series
 from script import run
-from snapshots import Snapshots, evenly, surface_grid
+from snapshots import Snapshots, evenly, shared_times, surface_grid
 from surfaces import draw_surface, extent, read_surface, upright_view
 from table import TableError, has_series, series
 from willmore import finest, from_limit, limit_of
@@ -58,9 +58,7 @@ def _lost(rows, surfaces, settings):
 
 def surfaces_figure(columns, notes):
     """Figure 7.5: a row of surfaces for each time, and the energies below. `columns`: {surface: (row, Snapshots)}."""
-    times = sorted({float(f"{t:.6g}") for _, snapshots in columns.values() for t, _ in snapshots.files})
-    found = [[snapshots.at(t) for _, snapshots in columns.values()] for t in times]
-    times, found = zip(*evenly([row for row in zip(times, found) if any(row[1])], ROWS))
+    times, found = zip(*evenly(shared_times([snapshots for _, snapshots in columns.values()]), ROWS))
     surfaces = [[file and read_surface(file[1]) for file in files] for files in found]
     views = [upright_view(next(filter(None, column)), TILT) for column in zip(*surfaces)]
     boxes = [[surface and extent(surface, of_column) for surface, of_column in zip(row, views)] for row in surfaces]
@@ -76,7 +74,7 @@ def surfaces_figure(columns, notes):
     width, height = figure.get_size_inches()
     for i, (above, (surface, (row, _))) in enumerate(zip(grid[0], columns.items())):
         box = above.get_position()
-        left, right = box.x0 + 0.3 / width, box.x1 - 0.04 / width
+        left, right = box.x0 + 0.3 / width, box.x1 - 0.1 / width
         axes = figure.add_axes([left, below / height, right - left, PANEL / height])
         _draw_energy(axes, surface, row)
         if i == 0:
