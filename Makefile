@@ -105,7 +105,7 @@ build-stems: configure
 
 test:
 	@ctest --test-dir build --output-on-failure -j$(local_jobs) | { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
-	$(PYTHON) plots/test_plots.py
+	$(PYTHON) -m unittest discover -s plots -p 'test_*.py'
 
 format:
 	@clang-format -i $(sources)

@@ -43,13 +43,15 @@ class Panel:
     """One panel: its curves against `variable` ("tau" or "h").
 
     A dashed line shows the theory's `order` of all curves, a dotted one the highest order of `faster` that some curve
-    follows (slope within 0.35).
+    follows (slope within 0.35). With a `limit` (value, label) the panel does not show errors but a quantity that tends
+    to it: a linear vertical axis, the limit as a dashed line, no orders.
     """
     title: str
     curves: list
     variable: str
     order: float = None
     faster: tuple = ()
+    limit: tuple = None
 
 
 def curves(rows, quantity, norm, variable, group=None):
@@ -59,12 +61,17 @@ def curves(rows, quantity, norm, variable, group=None):
     All quantities of the same rows get the same curves in the same order; a curve may be empty.
     `group(row)`: what makes other curves, a number (the highest comes first) and a label.
     """
+    return curves_of(rows, lambda row: row["errors"].get(quantity, {}).get(norm), variable, group, ROUND_OFF)
+
+
+def curves_of(rows, quantity, variable, group=None, smallest=-math.inf):
+    """`curves` of any `quantity(row)`; not shown is what is no finite number, or below `smallest`."""
     groups, skipped = {}, 0
     for row in filter(succeeded, rows):
         points = groups.setdefault(group(row) if group else _group(row, variable), [])
-        error = row["errors"].get(quantity, {}).get(norm)
-        if isinstance(error, (int, float)) and ROUND_OFF <= error < math.inf:
-            points.append((row[variable], error))
+        value = quantity(row)
+        if isinstance(value, (int, float)) and math.isfinite(value) and value >= smallest:
+            points.append((row[variable], value))
         else:
             skipped += 1
     ordered = sorted(groups.items(), key=lambda item: item[0][0], reverse=True)
@@ -74,8 +81,7 @@ def curves(rows, quantity, norm, variable, group=None):
 def _group(row, variable):
     """What the runs of one line have in common: the number that orders the lines, and the line's label."""
     if variable == "tau":
-        nodes = f"{row['nodes']:,}".replace(",", "{,}")
-        return float(f"{row['h']:.6g}"), f"$N = {nodes}$"
+        return float(f"{row['h']:.6g}"), style.nodes_label(row["nodes"])
     tau = float(f"{row['tau']:.6g}")
     return tau, rf"$\tau = {tau:.3g}$"
 
@@ -108,29 +114,31 @@ def checked_curves(rows, quantity, norm, variable):
     return lines, skipped
 
 
-def draw_panels(panels, y_label, notes=()):
+def draw_panels(panels, y_label, notes=(), columns=None):
     """A figure of panels with `notes` below: one legend when all have the same lines, otherwise one above each.
 
-    All panels span equally many decades: equal orders over the same variable look equally steep. Raises TableError
-    when all panels are empty.
+    All panels of errors span equally many decades: equal orders over the same variable look equally steep. `columns`:
+    how many panels stand side by side, if that matters. Raises TableError when all panels are empty.
     """
+    columns = columns or _columns(len(panels))
     if not any(len(line.points) for panel in panels for line in panel.curves):
         raise TableError(f"all errors are below {ROUND_OFF:g}")
     legends = [[line.label for line in panel.curves] for panel in panels]
     if all(labels == legends[0] for labels in legends):
         legends = legends[:1]
-    figure, all_axes = _frame(len(panels), legends, notes)
+    figure, all_axes = _frame(len(panels), columns, legends, notes)
     for i, (axes, panel) in enumerate(zip(all_axes, panels)):
         axes.set_title(panel.title, pad=4)
-        if i >= len(all_axes) - _columns(len(all_axes)):
+        if i >= len(all_axes) - columns:
             axes.set_xlabel(AXES[panel.variable], labelpad=2)
-        if i % _columns(len(all_axes)) == 0:
+        if i % columns == 0:
             axes.set_ylabel(y_label, labelpad=3)
         for curve, line_style in zip(panel.curves, style.line_styles(len(panel.curves))):
             axes.plot(*curve.points.T, **line_style)
         if not any(len(curve.points) for curve in panel.curves):
             axes.yaxis.set_visible(False)
-            axes.text(0.5, 0.5, f"all errors below {_power(ROUND_OFF)}", transform=axes.transAxes, ha="center")
+            reason = "nothing to show" if panel.limit else f"all errors below {_power(ROUND_OFF)}"
+            axes.text(0.5, 0.5, reason, transform=axes.transAxes, ha="center")
     _scale_and_reference(all_axes, panels)
     return figure
 
@@ -163,9 +171,8 @@ def _columns(panels):
     return min(panels, 2) if panels != 3 else 3
 
 
-def _frame(panels, legends, notes):
+def _frame(panels, columns, legends, notes):
     """The figure with empty panels and the notes below: a legend on top for all of them, or one above each."""
-    columns = _columns(panels)
     rows = math.ceil(panels / columns)
     width = min((style.WIDTH - LEFT - RIGHT - (columns - 1) * GAP_X) / columns, 1.8 * PANEL_HEIGHT)
     most = 5 if len(legends) == 1 else int((width + GAP_X) / LEGEND_ENTRY)
@@ -212,10 +219,34 @@ def _draw_legend(axes, labels, columns, anchor):
 
 
 def _scale_and_reference(all_axes, panels):
-    """Sets equal ranges, then draws the reference slopes; widens the ranges until every slope finds a place."""
+    """Sets the ranges of all axes, then draws limits and reference slopes."""
+    x = [np.log10(np.concatenate([curve.points[:, 0] for curve in panel.curves])) for panel in panels]
+    x_ranges = [_x_range(np.concatenate([xs for xs, other in zip(x, panels) if other.variable == panel.variable]))
+                for panel in panels]
+    for axes, x_range in zip(all_axes, x_ranges):
+        axes.set_xlim(10**x_range)
+        style.log_ticks(axes.xaxis, *10**x_range, _size_in_points(axes)[0])
+    errors = [of_panel for of_panel in zip(all_axes, panels, x_ranges) if not of_panel[1].limit]
+    if errors:
+        _scale_errors(*zip(*errors))
+    for axes, panel in zip(all_axes, panels):
+        if panel.limit:
+            _scale_to_limit(axes, panel)
+
+
+def _scale_to_limit(axes, panel):
+    limit, label = panel.limit
+    values = np.append(np.concatenate([curve.points[:, 1] for curve in panel.curves]), limit)
+    room = 0.1 * max(np.ptp(values), 1e-3 * abs(limit))
+    axes.set_yscale("linear")
+    axes.set_ylim(values.min() - room, values.max() + room)
+    axes.ticklabel_format(axis="y", useOffset=False)
+    style.limit_line(axes, limit, label)
+
+
+def _scale_errors(all_axes, panels, x_ranges):
+    """Sets equal vertical ranges, then draws the slopes; widens the ranges until every slope finds a place."""
     logs = [np.concatenate([np.log10(curve.points) for curve in panel.curves]) for panel in panels]
-    x_ranges = [_x_range(np.concatenate([log[:, 0] for log, other in zip(logs, panels)
-                                         if other.variable == panel.variable])) for panel in panels]
     middles = [(log[:, 1].min() + log[:, 1].max()) / 2 if len(log) else -16 for log in logs]
     span = max([2.0] + [1.12 * np.ptp(log[:, 1]) for log in logs if len(log)])
     room = 0.0
@@ -225,10 +256,8 @@ def _scale_and_reference(all_axes, panels):
         if None not in places:
             break
         room += 0.06 * span
-    for axes, x_range, y_range, references in zip(all_axes, x_ranges, y_ranges, places):
-        axes.set_xlim(10**x_range)
+    for axes, y_range, references in zip(all_axes, y_ranges, places):
         axes.set_ylim(10**y_range)
-        style.log_ticks(axes.xaxis, *10**x_range, _size_in_points(axes)[0])
         for label, look, placement in references or []:
             _draw_reference(axes, label, look, placement)
 

@@ -9,6 +9,7 @@ Figures 1-4 are left out when the table has none of their runs ("convergence"), 
 import math
 import statistics
 
+import style
 from convergence import QUANTITIES, Panel, checked_curves, curves, draw_panels, failure_notes
 from script import run
 from table import TableError, succeeded
@@ -77,8 +78,7 @@ def difference_figure(rows):
     if len(methods) > 1:
         for curve in methods:
             curve.order = int(curve.label[len("BDF"):]) - 1
-        nodes = f"{shared[0]['nodes']:,}".replace(",", "{,}")
-        panels.append(Panel(f"time, $N = {nodes}$", methods, "tau"))
+        panels.append(Panel(f"time, {style.nodes_label(shared[0]['nodes'])}", methods, "tau"))
     notes = [VARIANTS, *_seconds_note(main, bdf)]
     skipped = {"the difference": curves(rows, *DIFFERENCE, "tau")[1]}
     return draw_panels(panels, DIFFERENCE_LABEL, notes + failure_notes(rows, skipped))

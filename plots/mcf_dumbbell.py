@@ -12,16 +12,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
 
 import style
 import time_series
 from script import run
+from snapshots import Snapshots, surface_grid
 from surfaces import draw_surface, extent, read_surface, view
 from table import TableError, has_series, series
 
 REFERENCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "reference", "independent",
                          "dumbbell_axisymmetric.json")
+STEM = "mcf_dumbbell"
 PAPER_TAU = 0.003
 TIMES = (0, 0.03, 0.06, 0.072)  # of Figure 13.3, before the last surface of each run
 ZOOM = 0.07  # where the blow-up begins
@@ -29,18 +30,14 @@ ZOOM = 0.07  # where the blow-up begins
 LABELS = {"dziuk": "Dziuk", "kll": "(5.1)", "kll_normalised": r"(5.1), $\nu_h$ normalised",
           "kll_alpha1": r"(5.1), $\alpha = 1$", "kll_alpha10": r"(5.1), $\alpha = 10$",
           "kll_alpha100": r"(5.1), $\alpha = 100$", "bgn": "BGN", "bgn_p1": "BGN, linear elements"}
-DASHES = {"solid": "-", "dashed": (0, (5, 2)), "dotted": (0, (1, 1.3)), "dash-dot": (0, (6, 1.8, 1.2, 1.8)),
-          "dash-dot-dot": (0, (6, 1.5, 1.2, 1.5, 1.2, 1.5)), "short": (0, (2.5, 1.5)), "long": (0, (10, 2)),
-          "sparse": (0, (1, 3))}
-# Colours of Okabe and Ito, which colour-blind readers tell apart; the dashes say it again in greyscale.
-LINES = {"dziuk": {"color": "#D55E00", "linestyle": DASHES["dashed"]},
-         "kll": {"color": "#0072B2", "linestyle": DASHES["solid"], "zorder": 1.9},  # below the others' dashes
-         "kll_normalised": {"color": "#009E73", "linestyle": DASHES["dash-dot"]},
-         "kll_alpha1": {"color": "#56B4E9", "linestyle": DASHES["short"]},
-         "kll_alpha10": {"color": "#E69F00", "linestyle": DASHES["dash-dot-dot"]},
-         "kll_alpha100": {"color": "#7A6A00", "linestyle": DASHES["long"]},
-         "bgn": {"color": "#CC79A7", "linestyle": DASHES["dotted"]},
-         "bgn_p1": {"color": "#8F4B73", "linestyle": DASHES["sparse"]}}
+LINES = {"dziuk": {"color": style.VERMILLION, "linestyle": style.DASHES["dashed"]},
+         "kll": {"color": style.BLUE, "linestyle": style.DASHES["solid"], "zorder": 1.9},  # below the others' dashes
+         "kll_normalised": {"color": style.GREEN, "linestyle": style.DASHES["dash-dot"]},
+         "kll_alpha1": {"color": style.SKY_BLUE, "linestyle": style.DASHES["short"]},
+         "kll_alpha10": {"color": style.ORANGE, "linestyle": style.DASHES["dash-dot-dot"]},
+         "kll_alpha100": {"color": "#7A6A00", "linestyle": style.DASHES["long"]},
+         "bgn": {"color": style.PURPLE, "linestyle": style.DASHES["dotted"]},
+         "bgn_p1": {"color": "#8F4B73", "linestyle": style.DASHES["sparse"]}}
 for line in LINES.values():
     line["linewidth"] = 1.15
 REFERENCE_LINE = {"color": "black", "linewidth": 0.7}
@@ -65,15 +62,11 @@ class Setting:
         """Mesh, step size and start, and the numbers of those methods that have others."""
         others = ""
         for method, row in self.runs.items():
-            nodes = "" if row["nodes"] == self.nodes else _thousands("N", row["nodes"])
+            nodes = "" if row["nodes"] == self.nodes else style.nodes_label(row["nodes"])
             tau = "" if _same(row["tau"], self.tau) else rf"$\tau = {row['tau']:.3g}$"
             if method in methods and (nodes or tau):
                 others += f"; {LABELS[method]}: " + ", ".join(filter(None, (nodes, tau)))
-        return f"{_thousands('N', self.nodes)}, {self.steps()}{others}"
-
-
-def _thousands(symbol, number):
-    return f"${symbol} = " + f"{number:,}".replace(",", "{,}") + "$"
+        return f"{style.nodes_label(self.nodes)}, {self.steps()}{others}"
 
 
 def paper_setting(rows):
@@ -116,38 +109,14 @@ def _setting(rows, candidates, tau, bgn_tau):
     return Setting(first["start"], first["tau"], first["nodes"], {m: runs[m] for m in LABELS if m in runs})
 
 
-class Snapshots:
-    """The snapshots of a run: [(t, path)] in the order of time. Raises TableError when an entry is incomplete."""
-
-    def __init__(self, row, folder):
-        cell = os.path.join(folder, "cells", "mcf_dumbbell", str(row.get("cell")))
-        try:
-            self.files = sorted((float(entry["t"]), os.path.join(cell, entry["file"]))
-                                for entry in row.get("snapshots") or [])
-        except (KeyError, TypeError, ValueError) as error:
-            raise TableError(f"{row.get('cell', '?')}: snapshots are no list of {{t, file}}") from error
-        self.tau = row["tau"]
-
-    def at(self, t):
-        """The snapshot closest to t, at most half a step away, or None."""
-        near = [file for file in self.files if abs(file[0] - t) <= 0.501 * self.tau]
-        return min(near, key=lambda file: abs(file[0] - t), default=None)
-
-    def last(self):
-        return self.files[-1] if self.files else None
-
-
 # --- Figure 13.3: the surfaces
-
-LABEL_WIDTH, TITLES, PANEL_GAP, T_LINE, PAGE = 0.26, 0.22, 0.10, 0.17, 8.0  # inches
-
 
 def surfaces_figure(setting, methods, folder):
     """A grid of surfaces, a column for each method that has snapshots, a row for each time; None without any.
 
     One scale for all panels. The last row shows the last surface of each run, at its own time.
     """
-    found = {method: Snapshots(setting.runs[method], folder) for method in methods if method in setting.runs}
+    found = {method: Snapshots(setting.runs[method], folder, STEM) for method in methods if method in setting.runs}
     found = {method: snapshots for method, snapshots in found.items() if snapshots.files}
     if not found:
         return None
@@ -158,7 +127,7 @@ def surfaces_figure(setting, methods, folder):
     surfaces = [[file and read_surface(file[1]) for file in files] for files in cells]
     boxes = [[surface and extent(surface, rotation) for surface in row] for row in surfaces]
     shown = [i for i, row in enumerate(boxes) if any(row)]
-    figure, grid = _surface_grid([boxes[i] for i in shown], [labels[i] for i in shown],
+    figure, grid = surface_grid([boxes[i] for i in shown], [labels[i] for i in shown],
                                  [LABELS[method] for method in found], setting.heading(found))
     for i, axes_row in zip(shown, grid):
         for axes, file, surface in zip(axes_row, cells[i], surfaces[i]):
@@ -170,48 +139,6 @@ def surfaces_figure(setting, methods, folder):
     return figure
 
 
-def _surface_grid(boxes, labels, titles, heading):
-    """(figure, axes[row][column]): panels of one scale, as high as what they show, and a bar for the scale."""
-    columns = len(titles)
-    width = (style.WIDTH - LABEL_WIDTH - (columns - 1) * PANEL_GAP) / columns
-    widest = max(box[1] - box[0] for row in boxes for box in row if box)
-    heights = np.array([1.02 * max(box[3] - box[2] for box in row if box) for row in boxes])
-    scale = min(0.98 * width / widest, PAGE / heights.sum())
-    heights = heights * scale
-    height = 2 * TITLES + sum(heights) + PANEL_GAP * (len(boxes) - 1) + T_LINE + 0.03
-    figure = Figure(figsize=(style.WIDTH, height))
-    figure.text(LABEL_WIDTH / style.WIDTH, 1 - 0.03 / height, heading, va="top")
-    _scale_bar(figure, scale)
-    grid, y = [], height - 2 * TITLES
-    for row, row_height, label in zip(boxes, heights, labels):
-        y -= row_height
-        figure.text(0.03 / style.WIDTH, (y + row_height / 2) / height, label, rotation=90, ha="left", va="center",
-                    fontsize=8.5)
-        grid.append([])
-        for column, title in enumerate(titles):
-            x = LABEL_WIDTH + column * (width + PANEL_GAP)
-            axes = figure.add_axes([x / style.WIDTH, y / height, width / style.WIDTH, row_height / height])
-            axes.set_axis_off()
-            box = row[column] or next(filter(None, row))
-            middle = (box[0] + box[1]) / 2, (box[2] + box[3]) / 2
-            axes.set_xlim(middle[0] - width / scale / 2, middle[0] + width / scale / 2)
-            axes.set_ylim(middle[1] - row_height / scale / 2, middle[1] + row_height / scale / 2)
-            if row is boxes[0]:
-                figure.text((x + width / 2) / style.WIDTH, (y + row_height + 0.05) / height, title, ha="center",
-                            va="bottom")
-            grid[-1].append(axes)
-        y -= PANEL_GAP
-    return figure, grid
-
-
-def _scale_bar(figure, scale, length=0.5):
-    """A bar in the upper right corner; `scale` in inches per unit of length."""
-    y = 1 - 0.11 / figure.get_size_inches()[1]
-    right, left = 1 - 0.03 / style.WIDTH, 1 - (0.03 + length * scale) / style.WIDTH
-    figure.add_artist(Line2D([left, right], [y, y], color="black", linewidth=0.8, marker="|", markersize=5))
-    figure.text(left - 0.06 / style.WIDTH, y, f"{length:g}", ha="right", va="center", fontsize=8)
-
-
 # --- Figure 13.4: the neck
 
 NECK_WINDOW = 0.36, 0.105  # half the length and half the height of the close-up
@@ -219,7 +146,7 @@ NECK_WINDOW = 0.36, 0.105  # half the length and half the height of the close-up
 
 def neck_figure(panels, folder):
     """Close-ups of the last surface of runs: panels is [(heading, row)]; None when none has a snapshot."""
-    panels = [(heading, row, Snapshots(row, folder).last()) for heading, row in panels]
+    panels = [(heading, row, Snapshots(row, folder, STEM).last()) for heading, row in panels]
     panels = [panel for panel in panels if panel[2]]
     if not panels:
         return None
@@ -380,4 +307,4 @@ def draw(table, folder):
 
 
 if __name__ == "__main__":
-    run("mcf_dumbbell", draw, __doc__)
+    run(STEM, draw, __doc__)

@@ -5,11 +5,14 @@ Sizes are print sizes: a figure is WIDTH wide and is included in a page without 
 """
 import math
 import os
+import re
+import textwrap
 
 import matplotlib
 
 matplotlib.use("Agg")
 from matplotlib import ticker  # noqa: E402  (the backend comes first)
+from matplotlib.figure import Figure  # noqa: E402
 
 CM = 1 / 2.54
 WIDTH = 17 * CM  # text width of a page, in inches
@@ -60,6 +63,48 @@ def line_styles(count):
         styles.append({"color": colours(0.8 * t), "marker": marker, "markersize": size, "markerfacecolor": "white",
                        "markeredgewidth": 0.9})
     return styles
+
+
+# Colours of Okabe and Ito, which colour-blind readers tell apart; dashes say it again in greyscale.
+BLUE, VERMILLION, GREEN, SKY_BLUE, ORANGE, PURPLE = "#0072B2", "#D55E00", "#009E73", "#56B4E9", "#E69F00", "#CC79A7"
+DASHES = {"solid": "-", "dashed": (0, (5, 2)), "dotted": (0, (1, 1.3)), "dash-dot": (0, (6, 1.8, 1.2, 1.8)),
+          "dash-dot-dot": (0, (6, 1.5, 1.2, 1.5, 1.2, 1.5)), "short": (0, (2.5, 1.5)), "long": (0, (10, 2)),
+          "sparse": (0, (1, 3))}
+
+
+def limit_line(axes, limit, label="", zorder=1.5):
+    """A dashed line at the value that a quantity tends to, with its name on the right, on the side with more room."""
+    low, high = axes.get_ylim()
+    axes.axhline(limit, color="black", linewidth=0.8, linestyle=(0, (4, 2.5)), zorder=zorder, gid=f"limit {label}")
+    above = high - limit > limit - low
+    axes.annotate(label, (1, limit), (-8, 2.5 if above else -3), xycoords=("axes fraction", "data"),
+                  textcoords="offset points", ha="right", va="bottom" if above else "top", fontsize=8.5)
+
+
+def notice(paragraphs):
+    """A figure that says in words why there is no other."""
+    lines = [line for paragraph in paragraphs for line in wrap(paragraph, 110)]
+    figure = Figure(figsize=(WIDTH, 0.3 + 0.18 * len(lines)))
+    figure.text(0.5, 0.5, "\n".join(lines), ha="center", va="center")
+    return figure
+
+
+def wrap(text, width=125):
+    """The text in lines of at most `width` characters, never broken inside a formula."""
+    formulas = re.sub(r"\$[^$]*\$", lambda match: match[0].replace(" ", "\0"), text)
+    return [line.replace("\0", " ") for line in textwrap.wrap(formulas, width)]
+
+
+def power_of_ten(value):
+    """A number with two digits at most times a power of ten; 1 times is left out."""
+    mantissa, exponent = f"{value:.1e}".split("e")
+    times = "" if mantissa == "1.0" else rf"{float(mantissa):g}\cdot "
+    return f"${times}10^{{{int(exponent)}}}$"
+
+
+def nodes_label(nodes):
+    """The number of nodes (degrees of freedom) of a mesh as it stands in legends and headings."""
+    return "$N = " + f"{nodes:,}".replace(",", "{,}") + "$"
 
 
 def log_ticks(axis, low, high, length):

@@ -46,16 +46,23 @@ def read_surface(path):
     return Surface(np.asarray(mesh.points, float), blocks[0], dict(mesh.point_data))
 
 
-def view(turn, tilt=0.0):
+def view(turn, tilt=0.0, up=1):
     """The rotation (3, 3) to picture coordinates: to the right, upwards, towards the viewer.
 
-    x3 goes to the right; `turn` > 0 (degrees) shows its lower end, `tilt` > 0 the surface from above.
+    `up` names the vertical axis, the next one (cyclically) comes to the viewer: for x1 upwards, x3 goes to the right.
+    `turn` > 0 (degrees) shows the lower end of the axis to the right, `tilt` > 0 the surface from above.
     """
     turn, tilt = np.radians([turn, tilt])
-    across = np.array([[0, 0, 1], [1, 0, 0], [0, 1, 0]])
+    across = np.eye(3)[[(up + 1) % 3, up - 1, up % 3]]
     about_vertical = np.array([[np.cos(turn), 0, np.sin(turn)], [0, 1, 0], [-np.sin(turn), 0, np.cos(turn)]])
     about_horizontal = np.array([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]])
     return about_horizontal @ about_vertical @ across
+
+
+def upright_view(surface, tilt):
+    """The view with x3 upwards in which the longer one of the surface's horizontal axes is nearly across."""
+    lengths = np.ptp(surface.points, axis=0)
+    return view(25 if lengths[1] > lengths[0] else -65, tilt, up=3)
 
 
 def shape_functions(xi, count):

@@ -1,30 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Figures of quantities over time: panels in rows with a heading each, one legend on top, notes below."""
 import math
-import textwrap
 
 import numpy as np
 from matplotlib import ticker
 from matplotlib.figure import Figure
 
 import style
-from table import has_series, series
+from table import has_series, series, succeeded
 
 # Inches: what surrounds the panels.
-LEFT, RIGHT, GAP_X, BELOW = 0.50, 0.10, 0.50, 0.36
+LEFT, RIGHT, GAP_X, BELOW = 0.56, 0.10, 0.50, 0.36
 PANEL_HEIGHT, HEADING, LINE = 1.62, 0.20, 0.165
 
 
-def panels(headings, labels, notes=()):
+def panels(headings, labels, notes=(), above=0.0, abreast=4):
     """(figure, axes[row][column]): an empty figure with one panel for each heading in rows of `headings`.
 
     A heading may be as long as the empty ones beside it allow. `labels`: {label: keyword arguments of `plot`}, the
-    legend. `notes`: lines at the foot.
+    legend, at most `abreast` in a row. `notes`: lines at the foot. `above`: inches that stay free at the top.
     """
     columns = max(map(len, headings))
-    legend_rows = math.ceil(len(labels) / 4)
+    legend_rows = math.ceil(len(labels) / abreast)
     legend_columns = math.ceil(len(labels) / legend_rows)
-    top, bottom = legend_rows * LINE + 0.05, LINE * len(notes)
+    top, bottom = above + legend_rows * LINE + 0.05, LINE * len(notes)
     row_height = HEADING + PANEL_HEIGHT + BELOW
     height = top + len(headings) * row_height + bottom
     figure = Figure(figsize=(style.WIDTH, height))
@@ -43,8 +42,8 @@ def panels(headings, labels, notes=()):
     handles = [grid[0][0].plot([], [], label=label, **line_style)[0] for label, line_style in labels.items()]
     by_rows = [i for column in range(legend_columns) for i in range(column, len(handles), legend_columns)]
     figure.legend([handles[i] for i in by_rows], [list(labels)[i] for i in by_rows], loc="upper center",
-                  ncol=legend_columns, bbox_to_anchor=(0.5, 1.0), borderaxespad=0.1, labelspacing=0.25,
-                  columnspacing=1.6, handlelength=2.6)
+                  ncol=legend_columns, bbox_to_anchor=(0.5, 1 - above / height), borderaxespad=0.1,
+                  labelspacing=0.25, columnspacing=1.6, handlelength=2.6)
     add_notes(figure, notes)
     return figure, grid
 
@@ -58,21 +57,38 @@ def add_notes(figure, notes):
 
 def failure_notes(rows):
     """The lines of a note that says which runs failed; none when all are there."""
-    failed = [str(row.get("cell", "?")) for row in rows if not has_series(row)]
-    if not failed:
-        return []
-    more = f" and {len(failed) - 6} more" if len(failed) > 6 else ""
-    return textwrap.wrap(f"{len(failed)} of {len(rows)} runs failed: {', '.join(failed[:6])}{more}.", 125)
+    failed = [row for row in rows if not has_series(row)]
+    return style.wrap(f"{len(failed)} of {len(rows)} runs failed: {_names(failed)}.") if failed else []
 
 
-def draw_series(axes, row, name, line_style, span):
-    """Draws one quantity of a run; returns its values at times in `span`, those that are numbers."""
+def stopped_notes(rows):
+    """The lines of a note that says which runs stopped at a singularity; none when none did."""
+    stopped = [row for row in rows if has_series(row) and not succeeded(row)]
+    return style.wrap(f"Stopped early, as singular: {_names(stopped)}.") if stopped else []
+
+
+def _names(rows):
+    names = [str(row.get("cell", "?")) for row in rows]
+    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+
+
+def draw_series(axes, row, name, line_style, span, change=None):
+    """Draws one quantity of a run; returns its values at times in `span`, those that are numbers.
+
+    `change(values)`: what is drawn instead of the values, such as the distance from a limit.
+    """
     found = series(row, name)
     if found is None:
         return np.empty(0)
     t, values = found
+    values = change(values) if change else values
     axes.plot(t, values, **line_style)
     return values[(t >= span[0]) & (t <= span[1]) & np.isfinite(values)]
+
+
+def positive(values):
+    """The values, NaN where they have no logarithm: nothing is drawn there."""
+    return np.where(values > 0, values, math.nan)
 
 
 def scale(axes, values, logarithmic=False):
@@ -86,10 +102,18 @@ def scale(axes, values, logarithmic=False):
     room = max(0.06 * np.ptp(values), 0.01)
     low, high = values.min() - room, values.max() + room
     axes.set_ylim(*(10**np.array([low, high]) if logarithmic else (low, high)))
-    for mantissas in ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 5, 7)) if logarithmic else ():
-        ticks = [m * 10.0**d for d in range(-8, 9) for m in mantissas if low <= math.log10(m) + d <= high]
-        if len(ticks) >= 4:
-            axes.yaxis.set_major_locator(ticker.FixedLocator(ticks))
-            axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
-            axes.yaxis.set_minor_locator(ticker.NullLocator())
+    if logarithmic:
+        _label_logarithmic(axes.yaxis, low, high)
+
+
+def _label_logarithmic(axis, low, high):
+    """At least four round numbers between 10^low and 10^high; powers of ten are wide, so two of them are enough."""
+    plain = low >= -3.3 and high <= 5
+    for mantissas in ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 5, 7)):
+        ticks = [m * 10.0**d for d in range(-20, 21) for m in mantissas if low <= math.log10(m) + d <= high]
+        if len(ticks) >= (2 if mantissas == (1,) and not plain else 4):
+            axis.set_major_locator(ticker.FixedLocator(ticks[::math.ceil(len(ticks) / 8)]))
+            axis.set_major_formatter(ticker.FuncFormatter(
+                lambda value, _: f"{value:g}" if plain else style.power_of_ten(value)))
+            axis.set_minor_locator(ticker.NullLocator())
             return
