@@ -25,6 +25,8 @@
 #include "solver/flows/bgn_flow.hpp"
 #include "solver/flows/coupled_diffusion.hpp"
 #include "solver/flows/dziuk_flow.hpp"
+#include "solver/flows/willmore_flow.hpp"
+#include "solver/time/adaptive.hpp"
 
 namespace {
 
@@ -66,18 +68,48 @@ void write(const EvolveConfig& config, RunRecorder& recorder, const std::string&
 template <class State>
 using ExactState = std::function<State(double)>;
 
+/// The field that adaptive steps follow: u where the flow has one, else the positions.
+template <class State, class = void>
+constexpr Field State::*controlled = &State::x;
+template <class State>
+constexpr Field State::*controlled<State, std::void_t<decltype(&State::u)>> = &State::u;
+
+/// What the numbers of a run depend on beside its initial state and time grid.
+std::optional<Checkpoint> checkpoint_of(const EvolveConfig& config, const json& config_json,
+                                        RunRecorder& recorder) {
+  if (config.checkpoint.empty()) return {};
+  std::optional<Checkpoint> checkpoint =
+      Checkpoint(config.checkpoint, {{"config", config_json}, {"build", build_identity()}});
+  attach(*checkpoint, recorder);
+  return checkpoint;
+}
+
+/// A run: what is asked for, and what keeps it.
+struct Run {
+  const EvolveConfig& config;
+  const SurfaceSpace& space;
+  RunRecorder& recorder;
+  Checkpoint* checkpoint;
+};
+
 /// Integrates from `initial` and records every step. exact: the exact solution, where one is known.
 template <class Flow, class State = typename Flow::State>
-void run_flow(Flow flow, const EvolveConfig& config, const State& initial, const ExactState<State>& exact,
-              RunRecorder& recorder) {
+void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactState<State>& exact) {
+  const EvolveConfig& config = run.config;
   TimeGrid grid = config.grid;
   if (!config.start_given && !exact) grid.start = parse_start("substeps:16");
+  const double end = config.adaptive ? config.adaptive->end_time : grid.steps * grid.tau;
   const bool terminal = isatty(STDERR_FILENO);
-  integrate(flow, grid, initial, exact, [&](int n, const State& state) {
-    recorder.record(n, state.t, state.x, point_fields(state));
+  const auto observe = [&](int n, const State& state) {
+    run.recorder.record(n, state.t, state.x, point_fields(state));
     if (terminal)
-      std::fprintf(stderr, "\rstep %d of %d, t = %g%s", n, grid.steps, state.t, n == grid.steps ? "\n" : "");
-  });
+      std::fprintf(stderr, "\rstep %d, t = %g of %g%s", n, state.t, end, state.t >= end ? "\n" : "");
+  };
+  if (config.adaptive)
+    integrate_adaptive(flow, *config.adaptive, initial, controlled<State>, observe, run.checkpoint);
+  else
+    integrate(flow, grid, initial, exact, observe, run.checkpoint);
+  if (run.checkpoint) warn(run.checkpoint->remark());
 }
 
 /// A sphere has an exact solution under mean curvature flow.
@@ -86,51 +118,74 @@ std::optional<ExactEvolution> exact_solution(const EvolveConfig& config) {
   return shrinking_sphere(config.surface->parameters.at("radius"));
 }
 
-void run_mean_curvature(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
+void run_mean_curvature(const Run& run) {
   using State = MeanCurvatureFlow::State;
+  const EvolveConfig& config = run.config;
   const Field& x0 = config.mesh.nodes;
   const std::optional<ExactEvolution> exact = exact_solution(config);
   ExactState<State> exact_state;
   if (exact) exact_state = [&](double t) { return exact_mean_curvature_state(*exact, x0, t); };
-  if (!config.surface)
-    warn("no exact surface is given: nu and H at the start are computed on the discrete surface");
-  run_flow(MeanCurvatureFlow(space, config.mean_curvature), config,
+  run_flow(MeanCurvatureFlow(run.space, config.mean_curvature), run,
            config.surface ? mean_curvature_state_on(*config.surface, x0)
-                          : discrete_mean_curvature_state(space, x0),
-           exact_state, recorder);
+                          : discrete_mean_curvature_state(run.space, x0),
+           exact_state);
 }
 
-void run_dziuk(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
+void run_dziuk(const Run& run) {
   using State = DziukFlow::State;
-  const Field& x0 = config.mesh.nodes;
-  const std::optional<ExactEvolution> exact = exact_solution(config);
+  const Field& x0 = run.config.mesh.nodes;
+  const std::optional<ExactEvolution> exact = exact_solution(run.config);
   ExactState<State> exact_state;
   if (exact) exact_state = [&](double t) { return exact_dziuk_state(*exact, x0, t); };
-  warn(dziuk_warning(config.grid.order));
-  run_flow(DziukFlow(space), config, dziuk_state_on(space, x0), exact_state, recorder);
+  warn(dziuk_warning(run.config.adaptive ? run.config.adaptive->order : run.config.grid.order));
+  run_flow(DziukFlow(run.space), run, dziuk_state_on(run.space, x0), exact_state);
 }
 
-void run_bgn(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
-  run_flow(BgnFlow(space), config, bgn_state_on(space, config.mesh.nodes), {}, recorder);
+void run_bgn(const Run& run) {
+  run_flow(BgnFlow(run.space), run, bgn_state_on(run.space, run.config.mesh.nodes), {});
 }
 
-void run_growing_sphere(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
-  const EvolveConfig::Coupled& coupled = config.coupled;
+void run_growing_sphere(const Run& run) {
+  const EvolveConfig::Coupled& coupled = run.config.coupled;
   const ExactEvolution exact = growing_sphere();
   const ExactState<CoupledDiffusionState> exact_state = [&](double t) {
-    return exact_growing_sphere_state(space, exact, config.mesh.nodes, t);
+    return exact_growing_sphere_state(run.space, exact, run.config.mesh.nodes, t);
   };
   const GrowingSphereProblem problem(coupled.parameters, coupled.variant.law, coupled.coupling);
-  run_flow(CoupledDiffusion(space, problem, coupled.parameters, coupled.variant), config, exact_state(0),
-           exact_state, recorder);
+  run_flow(CoupledDiffusion(run.space, problem, coupled.parameters, coupled.variant), run, exact_state(0),
+           exact_state);
 }
 
-void run_tumour_growth(const EvolveConfig& config, const SurfaceSpace& space, RunRecorder& recorder) {
-  const EvolveConfig::Coupled& coupled = config.coupled;
-  const CoupledDiffusionState initial =
-      tumour_growth_state(space, config.mesh.nodes, coupled.kinetics, coupled.disturbance, coupled.seed);
-  run_flow(CoupledDiffusion(space, TumourGrowth(coupled.kinetics), coupled.parameters, coupled.variant),
-           config, initial, {}, recorder);
+void run_tumour_growth(const Run& run) {
+  const EvolveConfig::Coupled& coupled = run.config.coupled;
+  const CoupledDiffusionState initial = tumour_growth_state(
+      run.space, run.config.mesh.nodes, coupled.kinetics, coupled.disturbance, coupled.seed);
+  run_flow(CoupledDiffusion(run.space, TumourGrowth(coupled.kinetics), coupled.parameters, coupled.variant),
+           run, initial, {});
+}
+
+void run_willmore(const Run& run) {
+  const EvolveConfig& config = run.config;
+  const Field& x0 = config.mesh.nodes;
+  const WillmoreStart start = config.surface ? willmore_start_on(run.space, *config.surface, x0,
+                                                                 config.willmore.law, config.willmore_theta)
+                                             : discrete_willmore_start(run.space, x0, config.willmore.law);
+  run_flow(WillmoreFlow(run.space, config.willmore, start.theta), run, start.state, {});
+}
+
+void run(const Run& run) {
+  const std::string& flow = run.config.flow;
+  if (flow == "mean_curvature") return run_mean_curvature(run);
+  if (flow == "dziuk") return run_dziuk(run);
+  if (flow == "bgn") return run_bgn(run);
+  if (flow == "willmore" || flow == "surface_diffusion") return run_willmore(run);
+  const bool is_sphere = run.config.coupled.problem == EvolveConfig::Coupled::growing_sphere;
+  is_sphere ? run_growing_sphere(run) : run_tumour_growth(run);
+}
+
+/// Whether the flow evolves nu and H: then they are not those of the discrete surface.
+bool evolves_curvature(const EvolveConfig& config) {
+  return config.flow == "mean_curvature" || config.flow == "willmore" || config.flow == "surface_diffusion";
 }
 
 int evolve(const std::string& file, const json& origin) {
@@ -138,15 +193,14 @@ int evolve(const std::string& file, const json& origin) {
   const EvolveConfig config = evolve_config(config_json, file);
   warn(config.mesh_remark);
   const SurfaceSpace space(config.mesh, config.rule);
-  RunRecorder recorder(space, config.snapshots);
+  const bool fourth_order = config.flow == "willmore" || config.flow == "surface_diffusion";
+  RunRecorder recorder(space, config.snapshots,
+                       fourth_order ? RunRecorder::of_flow_and_surface : RunRecorder::of_the_flow);
+  std::optional<Checkpoint> checkpoint = checkpoint_of(config, config_json, recorder);
+  if (evolves_curvature(config) && !config.surface)
+    warn("no exact surface is given: nu and H at the start are computed on the discrete surface");
   try {
-    if (config.flow == "mean_curvature") run_mean_curvature(config, space, recorder);
-    if (config.flow == "dziuk") run_dziuk(config, space, recorder);
-    if (config.flow == "bgn") run_bgn(config, space, recorder);
-    if (config.flow == "coupled_diffusion") {
-      const bool is_sphere = config.coupled.problem == EvolveConfig::Coupled::growing_sphere;
-      is_sphere ? run_growing_sphere(config, space, recorder) : run_tumour_growth(config, space, recorder);
-    }
+    run({config, space, recorder, checkpoint ? &*checkpoint : nullptr});
   } catch (const NumericsError& error) {
     if (!recorder.empty()) {
       write(config, recorder, error.what(), config_json, origin);

@@ -16,7 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-const std::set<std::string> known_flows = {"mean_curvature", "dziuk", "bgn", "coupled_diffusion"};
+const std::set<std::string> known_flows = {"mean_curvature",    "dziuk",    "bgn",
+                                           "coupled_diffusion", "willmore", "surface_diffusion"};
 
 std::string listed(const std::set<std::string>& names) {
   std::string list;
@@ -73,6 +74,32 @@ void make_mesh(const json& description, const std::string& where, int degree, Ev
   if (config.surface) project_nodes(config.mesh, *config.surface);
 }
 
+double positive_or(const JsonReader& reader, const std::string& key, double otherwise) {
+  const double value = reader.number_or(key, otherwise);
+  if (value > 0) return value;
+  throw InputError(
+      format("%s: found %s = %g; expected a positive number", reader.where().c_str(), key.c_str(), value));
+}
+
+/// Adaptive steps stand in the place of tau, steps and start.
+AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
+  for (const char* key : {"tau", "steps", "start"}) {
+    if (whole.has(key))
+      throw InputError(whole.where() + ": found adaptive and " + key + "; expected one of them");
+  }
+  const JsonReader reader(whole.object("adaptive"), whole.where() + ": adaptive");
+  reader.accept_only({"end_time", "tolerance", "first_step", "largest_step"});
+  AdaptiveGrid grid;
+  const int highest = flow == "bgn" ? 1 : 2;
+  grid.order = integer_within(whole, "bdf", highest, 1, highest);
+  grid.end_time = reader.number("end_time");
+  grid.tolerance = positive_or(reader, "tolerance", grid.tolerance);
+  grid.first_step = positive_or(reader, "first_step", grid.first_step);
+  if (reader.has("largest_step")) grid.largest_step = positive_or(reader, "largest_step", 0);
+  check_adaptive_grid(grid);
+  return grid;
+}
+
 TimeGrid time_grid(const JsonReader& reader, const std::string& flow) {
   TimeGrid grid;
   const bool one_step = flow == "bgn";
@@ -94,6 +121,12 @@ Quadrature quadrature(const json& description, const std::string& where) {
                           : symmetric_quadrature(reader.integer("degree"));
 }
 
+bool truth_or(const JsonReader& reader, const json& description, const std::string& key, bool otherwise) {
+  if (!reader.has(key)) return otherwise;
+  if (!description[key].is_boolean()) reader.wrong_type(key, "true or false", description[key]);
+  return description[key].get<bool>();
+}
+
 MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const std::string& where) {
   using Variant = MeanCurvatureFlow::Variant;
   const JsonReader reader(description, where);
@@ -106,11 +139,7 @@ MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const
     }
     variant.velocity = velocity == "ritz" ? Variant::ritz : Variant::interpolation;
   }
-  if (reader.has("normalise")) {
-    if (!description["normalise"].is_boolean())
-      reader.wrong_type("normalise", "true or false", description["normalise"]);
-    variant.normalise = description["normalise"].get<bool>();
-  }
+  variant.normalise = truth_or(reader, description, "normalise", false);
   variant.stabilise = reader.number_or("stabilise", 0);
   if (!(variant.stabilise >= 0)) {
     throw InputError(
@@ -130,6 +159,26 @@ Value choice(const JsonReader& reader, const std::string& key, const std::map<st
   for (const auto& [name, value] : words) names.insert(name);
   throw InputError(reader.where() + ": found " + key + " = \"" + reader.text(key) + "\"; expected one of " +
                    listed(names));
+}
+
+/// Variant of Willmore flow and surface diffusion. theta needs exact data, and is on where there are such.
+void read_willmore_variant(const json& description, const std::string& where, EvolveConfig& config) {
+  using Variant = WillmoreFlow::Variant;
+  const JsonReader reader(description, where);
+  reader.accept_only({"F", "project", "theta", "relaxation"});
+  Variant& variant = config.willmore;
+  variant.law = config.flow == "willmore" ? Variant::willmore : Variant::surface_diffusion;
+  variant.F = choice<Variant::Coupling>(
+      reader, "F", {{"extrapolated", Variant::extrapolated}, {"implicit", Variant::implicit}}, variant.F);
+  variant.project = truth_or(reader, description, "project", variant.project);
+  variant.relaxation = reader.number_or("relaxation", 0);
+  if (!(variant.relaxation >= 0)) {
+    throw InputError(
+        format("%s: found relaxation = %g; expected a number >= 0", where.c_str(), variant.relaxation));
+  }
+  config.willmore_theta = truth_or(reader, description, "theta", config.surface.has_value());
+  if (config.willmore_theta && !config.surface)
+    throw InputError(where + ": theta needs exact initial data; expected a \"surface\", or \"theta\": false");
 }
 
 /// "mass", "law" and, for the growing sphere, "coupling".
@@ -225,18 +274,22 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
                      listed(known_flows));
   }
   reader.accept_only({"flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start", "quadrature",
-                      "variant", "output", "problem", "parameters"});
+                      "variant", "output", "problem", "parameters", "adaptive"});
   const int degree = integer_within(reader, "degree", 2, 1, max_degree);
   config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
                 : config.flow == "bgn" && degree == 1 ? vertex_quadrature()
                                                       : default_quadrature(degree);
-  config.grid = time_grid(reader, config.flow);
+  if (reader.has("adaptive"))
+    config.adaptive = adaptive_grid(reader, config.flow);
+  else
+    config.grid = time_grid(reader, config.flow);
   config.start_given = reader.has("start");
   if (reader.has("output")) {
     const JsonReader output(reader.object("output"), source + ": output");
-    output.accept_only({"nodal", "series", "vtu", "every", "times"});
+    output.accept_only({"nodal", "series", "vtu", "every", "times", "checkpoint"});
     config.nodal = output.has("nodal") ? output.text("nodal") : "";
     config.series = output.has("series") ? output.text("series") : "";
+    config.checkpoint = output.has("checkpoint") ? output.text("checkpoint") : "";
     config.snapshots = snapshot_plan(output);
   }
   if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
@@ -247,10 +300,15 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
       if (reader.has(key))
         throw InputError(source + ": flow " + config.flow + " has none; expected no key " + key);
     }
-    if (reader.has("variant") && config.flow != "mean_curvature")
+    static const json none = json::object();
+    const json& variant = reader.has("variant") ? reader.object("variant") : none;
+    const std::string where = source + ": variant";
+    if (config.flow == "mean_curvature")
+      config.mean_curvature = mean_curvature_variant(variant, where);
+    else if (config.flow == "willmore" || config.flow == "surface_diffusion")
+      read_willmore_variant(variant, where, config);
+    else if (reader.has("variant"))
       throw InputError(source + ": flow " + config.flow + " has no variants; expected no key variant");
-    if (reader.has("variant"))
-      config.mean_curvature = mean_curvature_variant(reader.object("variant"), source + ": variant");
   }
   make_mesh(reader.object("mesh"), source + ": mesh", degree, config);
   return config;
@@ -261,7 +319,8 @@ std::string evolve_config_help() {
   {"flow": "mean_curvature"                   kll19 (5.1): evolution equations for nu and H
          | "dziuk"                            Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5
          | "bgn"                              Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good
-         | "coupled_diffusion",               nick18 (2.19)-(2.21): moved by what diffuses on the surface
+         | "coupled_diffusion"                nick18 (2.19)-(2.21): moved by what diffuses on the surface
+         | "willmore" | "surface_diffusion",  kll21 (3.4)-(3.5): V = Delta H + Q; surface diffusion: Q = 0
    "problem": "growing_sphere"                coupled_diffusion: nick18 7.3, from the unit sphere (default)
             | "tumour_growth",                activator and substrate (Schnakenberg) on any surface, from a disturbed
                                               steady state
@@ -276,20 +335,30 @@ std::string evolve_config_help() {
    "bdf": 3,                                  1..5; bgn: 1
    "tau": 0.05,                               step size (no default)
    "steps": 0,                                end time = steps tau; 0 writes the initial surface
+   "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
+                "tolerance": 1e-3,            follow the solution; of u (mean_curvature, coupled_diffusion, willmore,
+                "first_step": 1e-6,           surface_diffusion) or x, root mean square
+                "largest_step": 0.01},        default: no bound
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
    "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0},  mean_curvature
             {"mass": "extrapolated" | "reassembled", "law": "regularised" | "dynamic",
              "coupling": "additive" | "quotient" | "none"},   coupled_diffusion; coupling: growing_sphere
+            {"F": "extrapolated" | "implicit", "project": true, "theta": true, "relaxation": 0},  willmore, surface_diffusion;
+                                              theta: the correction (3.7), default false without "surface"; relaxation:
+                                              1/time, towards the geometry of the surface, times tau at most 0.8
    "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
+              "checkpoint": "run.checkpoint", the same command goes on from it when the run was stopped
               "every": 10,                    at every 10th step (default 0: none of these)
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
 Surfaces and their defaults:
 )" + named_surfaces_help() +
-         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u, or u1, u2) of the last step, one row a node
+         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u, or u1, u2;
+willmore, surface_diffusion: nu, H, V, z) of the last step, one row a node
 in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
-(degrees), worst_radius_ratio, for mean_curvature also min_nu, max_nu. Snapshots have v, nu, H, and kappa = M^-1 A x. Where
+(degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
+willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself. Snapshots have v, nu, H, and kappa = M^-1 A x. Where
 the flow has no nu, max_H and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
 A run that meets a singularity writes what it has computed, says so, and ends with exit code 2.)";
 }

@@ -10,21 +10,25 @@
 #include "solver/flows/growing_sphere.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/tumour_growth.hpp"
+#include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/mesh.hpp"
-#include "solver/time/integrate.hpp"
+#include "solver/time/adaptive.hpp"
 
 namespace esfem {
 
 /// What a CONFIG.json of `evolve` asks for, with the defaults filled in.
 struct EvolveConfig {
-  std::string flow;                ///< mean_curvature | dziuk | bgn | coupled_diffusion
+  std::string flow;  ///< mean_curvature | dziuk | bgn | coupled_diffusion | willmore | surface_diffusion
   std::optional<Surface> surface;  ///< the exact initial surface, where one is given
   Mesh mesh;                       ///< P_k; on the surface, where there is one
   std::string mesh_remark;         ///< what the reader of the mesh changed; empty: nothing
   TimeGrid grid;
-  bool start_given = false;  ///< whether grid.start comes from the file
+  bool start_given = false;              ///< whether grid.start comes from the file
+  std::optional<AdaptiveGrid> adaptive;  ///< instead of `grid`, where the file asks for it
   Quadrature rule;
   MeanCurvatureFlow::Variant mean_curvature;
+  WillmoreFlow::Variant willmore;
+  bool willmore_theta = false;  ///< with the correction (3.7) of kll21
   struct Coupled {
     enum Problem { growing_sphere, tumour_growth } problem = growing_sphere;
     CoupledDiffusionParameters parameters;
@@ -35,6 +39,7 @@ struct EvolveConfig {
     int seed = 1;
   } coupled;
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
+  std::string checkpoint;           ///< a file from which a stopped run goes on; empty: not wanted
   SnapshotPlan snapshots;
 };
 

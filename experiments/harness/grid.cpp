@@ -91,8 +91,7 @@ std::string run_to_end(const std::function<void()>& integrate, RunRecorder& reco
 std::optional<Checkpoint> checkpoint_in(const std::string& folder, const std::string& cell) {
   if (folder.empty()) return {};
   std::filesystem::create_directories(folder);
-  const auto built = std::filesystem::last_write_time(executable_path()).time_since_epoch().count();
-  return Checkpoint(folder + "/checkpoint", {{"cell", cell}, {"built", built}});
+  return Checkpoint(folder + "/checkpoint", {{"cell", cell}, {"build", build_identity()}});
 }
 
 void describe_run(RunRecorder& recorder, Row& row) {

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <ctime>
+#include <filesystem>
 #include <fstream>
 #include <set>
 
@@ -46,6 +47,10 @@ std::string executable_path() {
   char path[PATH_MAX];
   const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
   return length > 0 ? std::string(path, length) : std::string();
+}
+
+nlohmann::json build_identity() {
+  return std::filesystem::last_write_time(executable_path()).time_since_epoch().count();
 }
 
 nlohmann::json provenance(int argc, char** argv) {

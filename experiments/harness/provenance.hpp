@@ -12,6 +12,9 @@ namespace esfem {
 /// Path of the running executable.
 std::string executable_path();
 
+/// Tells one build of this program from another.
+nlohmann::json build_identity();
+
 /// Where the numbers come from: {"version", "git", "dirty", "compiler", "flags", "cpu", "threads", "date"
 /// (UTC, ISO 8601), "command"}. What concerns the build is read from provenance.json beside the executable,
 /// which every build renews: compiled in, the commit would relink every executable and outdate every result.
