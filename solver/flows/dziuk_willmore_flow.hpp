@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <memory>
+
+#include "solver/assembly/surface_space.hpp"
+#include "solver/mesh/write_vtu.hpp"
+#include "solver/time/history.hpp"
+
+namespace esfem {
+
+/// Willmore flow by Dziuk's scheme (Numer. Math. 111, 2008; kll21 (2.13)), linearly implicit: find x^n and
+/// w^n with
+///   (w^n, psi) = -(grad x^n, grad psi),
+///   ((x^n - x^{n-1})/tau, phi) = 1/2 (|w^{n-1}|², div phi) + (grad w^n, grad phi) + (div w^n, div phi)
+///                                - (D(phi) grad x^{n-1}, grad w^n),   D(phi) = grad phi + (grad phi)^T,
+/// for all psi, phi in S_h^3, on Gamma_h[x^{n-1}]. w approximates -H nu. In space the right-hand side is
+/// minus the derivative of the discrete energy 1/2 int |w|², so that the semi-discrete flow decreases it.
+class DziukWillmoreFlow {
+ public:
+  struct State {
+    double t = 0;
+    Field x;  ///< N x 3
+    Field v;  ///< N x 3: (x^n - x^{n-1})/tau
+    Field w;  ///< N x 3
+    static constexpr NamedField<State> fields[] = {{"x", &State::x}, {"v", &State::v}, {"w", &State::w}};
+  };
+
+  /// The space gives elements, degree and quadrature; it must outlive the flow.
+  explicit DziukWillmoreFlow(const SurfaceSpace& space);
+  ~DziukWillmoreFlow();
+  DziukWillmoreFlow(DziukWillmoreFlow&&);
+
+  /// One step; q must be 1 (InputError), the scheme is of first order. Throws SingularityError where the
+  /// surface is singular or no longer resolved (regularity.hpp).
+  void step(const History<State>& history, int q, double tau, State& next);
+
+ private:
+  struct System;
+  const SurfaceSpace& space_;
+  std::unique_ptr<System> system_;
+};
+
+/// The right-hand side of kll21 (2.13) on Gamma_h[x], for given w (N x 3): out (N x 3) has the test functions
+/// phi_j e_l. For w = -M(x)^-1 A(x) x it is minus the derivative of 1/2 w^T M(x) w with respect to the nodes.
+void assemble_willmore_force(const SurfaceSpace& space, const Field& x, const Field& w, Field& out);
+
+/// The state on nodes x at time 0, with w = -M(x)^-1 A(x) x and v from (2.13).
+DziukWillmoreFlow::State dziuk_willmore_state_on(const SurfaceSpace& space, const Field& x);
+
+/// The flow's own nodal fields beside x: v, w.
+std::vector<PointField> point_fields(const DziukWillmoreFlow::State& state);
+
+}  // namespace esfem
