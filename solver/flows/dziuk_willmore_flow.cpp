@@ -121,26 +121,38 @@ void AreaHessian::assemble(const Field& x) {
 
 /// With the old nodes x and w, both on the old surface, and the increments dx and dw, the two equations are
 ///   1/tau M dx - B dw = force(x, w),
-///   A dx + M dw = -A x - M w.
-/// Unknowns and equations go node by node, dx_1, dx_2, dx_3, dw_1, dw_2, dw_3.
+///   A dx + M dw = -A x - M w,
+/// with B dx for A dx in the linearised scheme. Unknowns and equations go node by node, dx_1, dx_2, dx_3,
+/// dw_1, dw_2, dw_3.
 struct DziukWillmoreFlow::System {
+  Curvature curvature;
   SymmetricMatrix M, A;
   AreaHessian B;
   NodeBlockLu lu;
   Field force, Ax, Mw;
   Eigen::VectorXd right, solution;
 
-  explicit System(const SurfaceSpace& space)
-      : M(space.matrix()),
-        A(M),
-        B(space),
-        lu(*space.pattern(), {{0, 3}, {1, 4}, {2, 5}, {0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 2, 5}}),
-        right(6 * space.dofs()),
-        solution(6 * space.dofs()) {}
-
+  System(const SurfaceSpace& space, Curvature curvature);
   void assemble(const SurfaceSpace& space, const Field& x, const Field& w);
   void factorise(double tau);
 };
+
+DziukWillmoreFlow::System::System(const SurfaceSpace& space, Curvature curvature)
+    : curvature(curvature),
+      M(space.matrix()),
+      A(M),
+      B(space),
+      lu(*space.pattern(),
+         curvature == dziuk
+             ? NodeBlockLu::BlockRows{{0, 3}, {1, 4}, {2, 5}, {0, 1, 2, 3}, {0, 1, 2, 4}, {0, 1, 2, 5}}
+             : NodeBlockLu::BlockRows{{0, 3, 4, 5},
+                                      {1, 3, 4, 5},
+                                      {2, 3, 4, 5},
+                                      {0, 1, 2, 3},
+                                      {0, 1, 2, 4},
+                                      {0, 1, 2, 5}}),
+      right(6 * space.dofs()),
+      solution(6 * space.dofs()) {}
 
 void DziukWillmoreFlow::System::assemble(const SurfaceSpace& space, const Field& x, const Field& w) {
   space.assemble(x, M, A);
@@ -154,13 +166,15 @@ void DziukWillmoreFlow::System::assemble(const SurfaceSpace& space, const Field&
 
 void DziukWillmoreFlow::System::factorise(double tau) {
   lu.factorise([&](int k, bool above, int a, int b) {
-    if (a >= 3) return b >= 3 ? M.values[k] : A.values[k];
-    return b >= 3 ? -B.entry(k, above, a, b - 3) : M.values[k] / tau;
+    if (a < 3 && b < 3) return M.values[k] / tau;
+    if (a < 3) return -B.entry(k, above, a, b - 3);
+    if (b >= 3) return M.values[k];
+    return curvature == dziuk ? A.values[k] : B.entry(k, above, a - 3, b);
   });
 }
 
-DziukWillmoreFlow::DziukWillmoreFlow(const SurfaceSpace& space)
-    : space_(space), system_(std::make_unique<System>(space)) {}
+DziukWillmoreFlow::DziukWillmoreFlow(const SurfaceSpace& space, Curvature curvature)
+    : space_(space), system_(std::make_unique<System>(space, curvature)) {}
 
 DziukWillmoreFlow::~DziukWillmoreFlow() = default;
 DziukWillmoreFlow::DziukWillmoreFlow(DziukWillmoreFlow&&) = default;

@@ -16,8 +16,19 @@ namespace esfem {
 ///                                - (D(phi) grad x^{n-1}, grad w^n),   D(phi) = grad phi + (grad phi)^T,
 /// for all psi, phi in S_h^3, on Gamma_h[x^{n-1}]. w approximates -H nu. In space the right-hand side is
 /// minus the derivative of the discrete energy 1/2 int |w|², so that the semi-discrete flow decreases it.
+///
+/// The step size is limited by the mesh. The terms with w^n on the right are the second variation B of the
+/// area, as a function of the nodes, which is negative on a third of them, the rough tangential
+/// displacements. The step has the matrix M/tau + B M^-1 A, and M^-1 B M^-1 A has eigenvalues down to -mu
+/// with mu about c/h²: from tau = 1/mu on the matrix can be singular, and the mesh is destroyed within a few
+/// steps. The cause is that A(x^{n-1}) x^n takes a tangential displacement for curvature; B(x^{n-1}) does
+/// not, and M/tau + B M^-1 B is positive definite for all tau.
 class DziukWillmoreFlow {
  public:
+  /// The equation of w^n, M w^n = -A x^n on the old surface (dziuk), or with the derivative of A(x) x by the
+  /// nodes x, M w^n = -A x^{n-1} - B (x^n - x^{n-1}) (linearised; not in the literature).
+  enum Curvature { dziuk, linearised };
+
   struct State {
     double t = 0;
     Field x;  ///< N x 3
@@ -27,7 +38,7 @@ class DziukWillmoreFlow {
   };
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
-  explicit DziukWillmoreFlow(const SurfaceSpace& space);
+  explicit DziukWillmoreFlow(const SurfaceSpace& space, Curvature curvature = dziuk);
   ~DziukWillmoreFlow();
   DziukWillmoreFlow(DziukWillmoreFlow&&);
 
