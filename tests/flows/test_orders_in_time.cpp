@@ -67,12 +67,15 @@ SemiDiscreteSolution<WillmoreFlow>& willmore_solution(bool project) {
   return project ? with : without;
 }
 
+// x, u and w show 0.99, 2.00, 2.95, 3.8; 1.00, 2.00, 2.92, 3.9; 0.99, 1.91, 2.86, 3.8. Below 1e-9 the errors
+// of x end at round-off.
 TEST(WillmoreFlowInTime, AllFieldsHaveTheOrderOfTheBdf) {
   using State = WillmoreFlow::State;
   const double tolerance = 0.25;
   for (int q : {1, 2, 3, 4}) {
-    for (Field State::*field : {&State::x, &State::u, &State::w})
-      EXPECT_GE(willmore_solution(false).order(q, q < 4 ? 128 : 256, {}, field), q - tolerance) << "BDF" << q;
+    EXPECT_GE(willmore_solution(false).order(q, 128, {}, &State::x), q - tolerance) << "BDF" << q;
+    EXPECT_GE(willmore_solution(false).order(q, 128, {}, &State::u), q - tolerance) << "BDF" << q;
+    EXPECT_GE(willmore_solution(false).order(q, 256, {}, &State::w), q - tolerance) << "BDF" << q;
   }
 }
 
