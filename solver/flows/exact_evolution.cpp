@@ -2,6 +2,7 @@
 #include "solver/flows/exact_evolution.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "solver/error.hpp"
 
@@ -59,6 +60,45 @@ ExactEvolution shrinking_sphere(double initial_radius) {
     gradient << projection, -H * shape.weingarten, shape.weingarten, Vec3::Zero();
   };
   return exact;
+}
+
+namespace {
+
+/// A surface at rest with quantities x, nu, H, from H and grad_Gamma H in a point where the normal is nu.
+ExactEvolution stationary(
+    const Surface& surface,
+    const std::function<std::pair<double, Vec3>(const Vec3& y, const Vec3& nu)>& mean_curvature) {
+  ExactEvolution exact;
+  exact.quantities = {{"x", 3}, {"nu", 3}, {"H", 1}};
+  exact.surface = [surface](double) { return surface; };
+  exact.trajectories = [](const Field& x0, double) { return x0; };
+  exact.fields = [mean_curvature](double, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
+                                  Eigen::MatrixXd& gradient) {
+    const auto [H, gradient_of_H] = mean_curvature(y, shape.normal);
+    value << y, shape.normal, H;
+    // grad id = P, grad nu = A.
+    const Mat3 projection = Mat3::Identity() - shape.normal * shape.normal.transpose();
+    gradient << projection, shape.weingarten, gradient_of_H;
+  };
+  return exact;
+}
+
+}  // namespace
+
+ExactEvolution stationary_sphere(double radius) {
+  return stationary(sphere(radius), [radius](const Vec3&, const Vec3&) {
+    return std::pair<double, Vec3>(2 / radius, Vec3::Zero());
+  });
+}
+
+ExactEvolution stationary_torus(double major, double minor) {
+  return stationary(torus(major, minor), [major, minor](const Vec3& y, const Vec3& nu) {
+    // H = 1/r + cos(theta)/rho with rho = R + r cos(theta); its gradient is R/(r rho²) P e_rho.
+    const double rho = std::hypot(y[0], y[1]);
+    const Vec3 outward = Vec3(y[0], y[1], 0) / rho;
+    const Vec3 gradient = major / (minor * rho * rho) * (outward - nu.dot(outward) * nu);
+    return std::pair<double, Vec3>(2 / minor - major / (minor * rho), gradient);
+  });
 }
 
 }  // namespace esfem

@@ -39,4 +39,11 @@ struct ExactEvolution {
 /// Quantities x, v = -H nu, nu, H.
 ExactEvolution shrinking_sphere(double initial_radius);
 
+/// A sphere at rest, as Willmore flow and surface diffusion leave it (kll21 §7.1). Quantities x, nu, H.
+ExactEvolution stationary_sphere(double radius);
+
+/// A torus at rest: the Clifford torus, major = sqrt(2) minor, under Willmore flow (kll21 §7.3). Quantities
+/// x, nu, H = 2/minor - major/(minor rho), rho the distance from the x3 axis.
+ExactEvolution stationary_torus(double major, double minor);
+
 }  // namespace esfem

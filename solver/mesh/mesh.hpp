@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "solver/surfaces/surface.hpp"
@@ -53,5 +54,17 @@ Mesh icosphere(double radius, int subdivisions);
 Mesh octasphere(double radius, int subdivisions);
 /// n_major x n_minor grid on a torus, each cell cut along alternating diagonals where that is possible.
 Mesh torus_grid(double major, double minor, int n_major, int n_minor);
+/// The same, uniform in isothermal coordinates: r d theta/(R + r cos theta) is constant, R = major, r =
+/// minor, so that all cells have one shape and their size is proportional to the distance from the axis. They
+/// are squares when n_minor/n_major = r/sqrt(R² - r²), which is 1 on the Clifford torus R = sqrt(2) r.
+Mesh isothermal_torus_grid(double major, double minor, int n_major, int n_minor);
+/// A size function for unstructured meshes (`generate_mesh`) of surfaces around the x3 axis: linear in the
+/// distance from the axis between (inner_distance, inner_length) and (outer_distance, outer_length), constant
+/// beyond. Throws InputError unless 0 <= inner_distance < outer_distance.
+std::function<double(const Vec3&)> radial_edge_length(double inner_distance, double inner_length,
+                                                      double outer_distance, double outer_length);
+/// The one for a torus: `largest` at the outer equator, largest min(1, (major - minor)/minor) at the inner.
+/// It resolves the surface whenever largest <= minor.
+std::function<double(const Vec3&)> torus_edge_length(double major, double minor, double largest);
 
 }  // namespace esfem

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -20,6 +21,8 @@ Mesh subdivide(const Mesh& mesh) {
 }
 
 namespace {
+
+const double turn = 2 * std::acos(-1.0);
 
 void put_on_sphere(Mesh& mesh, double radius) {
   for (int i = 0; i < mesh.nodes.rows(); ++i) mesh.nodes.row(i) *= radius / mesh.nodes.row(i).norm();
@@ -64,22 +67,29 @@ Mesh octasphere(double radius, int subdivisions) {
   return subdivided_sphere(std::move(mesh), radius, subdivisions);
 }
 
-Mesh torus_grid(double major, double minor, int n_major, int n_minor) {
+namespace {
+
+void check_torus_radii(double major, double minor) {
   if (!(minor > 0) || !(major > minor) || !std::isfinite(major))
     throw InputError(format("torus radii %g and %g, 0 < minor < major expected", major, minor));
+}
+
+/// The grid whose nodes have the angles `around(j)`, j = 0, ..., n_minor - 1, around the tube.
+template <class Angle>
+Mesh torus_grid_with_angles(double major, double minor, int n_major, int n_minor, Angle around) {
+  check_torus_radii(major, minor);
   if (n_major < 3 || n_minor < 3)
     throw InputError(format("torus grid of %d x %d cells, at least 3 x 3 expected", n_major, n_minor));
-  const double turn = 2 * std::acos(-1.0);
   Mesh mesh;
   mesh.nodes.resize(n_major * n_minor, 3);
   mesh.elements.resize(2 * n_major * n_minor, 3);
   const auto number = [&](int i, int j) { return i % n_major * n_minor + j % n_minor; };
   for (int i = 0; i < n_major; ++i)
     for (int j = 0; j < n_minor; ++j) {
-      const double along = turn * i / n_major, around = turn * j / n_minor;
-      const double from_axis = major + minor * std::cos(around);
+      const double along = turn * i / n_major, theta = around(j);
+      const double from_axis = major + minor * std::cos(theta);
       mesh.nodes.row(number(i, j)) << from_axis * std::cos(along), from_axis * std::sin(along),
-          minor * std::sin(around);
+          minor * std::sin(theta);
       const int a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1), d = number(i, j + 1);
       // Alternating diagonals: every node has four or eight neighbours, except beside a seam of an odd count.
       const int e = 2 * a;
@@ -92,6 +102,41 @@ Mesh torus_grid(double major, double minor, int n_major, int n_minor) {
       }
     }
   return mesh;
+}
+
+}  // namespace
+
+Mesh torus_grid(double major, double minor, int n_major, int n_minor) {
+  return torus_grid_with_angles(major, minor, n_major, n_minor,
+                                [n_minor](int j) { return turn * j / n_minor; });
+}
+
+Mesh isothermal_torus_grid(double major, double minor, int n_major, int n_minor) {
+  // Integral of r d theta/(R + r cos theta): tan(theta/2) = sqrt((R + r)/(R - r)) tan(s psi/(2r)), s² = R² -
+  // r², with the period 2 pi r/s in psi.
+  return torus_grid_with_angles(major, minor, n_major, n_minor, [=](int j) {
+    const double half = turn / 2 * j / n_minor;
+    return 2 *
+           std::atan2(std::sqrt(major + minor) * std::sin(half), std::sqrt(major - minor) * std::cos(half));
+  });
+}
+
+std::function<double(const Vec3&)> radial_edge_length(double inner_distance, double inner_length,
+                                                      double outer_distance, double outer_length) {
+  if (!(inner_distance >= 0) || !(outer_distance > inner_distance))
+    throw InputError(
+        format("edge lengths at the distances %g and %g from the axis, 0 <= first < second expected",
+               inner_distance, outer_distance));
+  return [=](const Vec3& y) {
+    const double outwards = (std::hypot(y[0], y[1]) - inner_distance) / (outer_distance - inner_distance);
+    return inner_length + (outer_length - inner_length) * std::clamp(outwards, 0.0, 1.0);
+  };
+}
+
+std::function<double(const Vec3&)> torus_edge_length(double major, double minor, double largest) {
+  check_torus_radii(major, minor);
+  const double smallest = largest * std::min(1.0, (major - minor) / minor);
+  return radial_edge_length(major - minor, smallest, major + minor, largest);
 }
 
 }  // namespace esfem

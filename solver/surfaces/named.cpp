@@ -2,6 +2,7 @@
 #include "solver/surfaces/named.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "solver/error.hpp"
@@ -22,6 +23,18 @@ std::vector<double> positive_numbers(const json& value, size_t count, const std:
     throw InputError("surface: " + what + " is " + value.dump() + "; expected " + expected);
   }
   return list.get<std::vector<double>>();
+}
+
+Surface checked_perturbed_torus(double major, double minor, double amplitude, double waves) {
+  if (waves != std::floor(waves) || waves > 1000)
+    throw InputError(
+        format("surface: perturbed_torus with waves = %g; expected an integer from 1 to 1000", waves));
+  if (amplitude >= minor || minor + amplitude >= major)
+    throw InputError(
+        format("surface: perturbed_torus with major = %g, minor = %g, amplitude = %g; expected amplitude < "
+               "minor and minor + amplitude < major",
+               major, minor, amplitude));
+  return perturbed_torus(major, minor, amplitude, static_cast<int>(waves));
 }
 
 /// One named surface: its parameters with defaults, and how it is made from them (in the order of the
@@ -48,6 +61,11 @@ const std::vector<Entry>& entries() {
          return torus(p[0][0], p[1][0]);
        }},
       {"dumbbell", {}, [](const auto&) { return dumbbell(); }},
+      {"perturbed_torus",
+       {{"major", 1}, {"minor", 0.6}, {"amplitude", 0.05}, {"waves", 3}},
+       [](const auto& p) { return checked_perturbed_torus(p[0][0], p[1][0], p[2][0], p[3][0]); }},
+      {"red_blood_cell", {}, [](const auto&) { return red_blood_cell(); }},
+      {"evans_fung_cell", {}, [](const auto&) { return evans_fung_cell(); }},
   };
   return list;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/error.hpp"
 
@@ -143,6 +144,96 @@ Surface dumbbell() {
   // The profile r(x3) has r(0) = 0.2 and r r'' = 199/100 there: the neck's meridian curves most, with radius
   // 0.2/1.99.
   return make_surface("dumbbell", d, 1.08, 0.2 / 1.99, 2);
+}
+
+namespace {
+
+const double pi = std::acos(-1.0);
+
+/// The smallest radius of curvature in the points of a grid on the surface, less 0.1% for what lies between
+/// them: point(s, t) with s, t in [0, 1], ends included.
+template <class Parametrisation>
+double sampled_curvature_radius(const Surface& surface, Parametrisation point, int n_s, int n_t) {
+  double largest_curvature = 0;
+  for (int i = 0; i <= n_s; ++i) {
+    for (int j = 0; j <= n_t; ++j) {
+      const Mat3 weingarten = surface.weingarten(point(i / double(n_s), j / double(n_t)));
+      const Eigen::SelfAdjointEigenSolver<Mat3> modes(weingarten, Eigen::EigenvaluesOnly);
+      largest_curvature = std::max(largest_curvature, modes.eigenvalues().cwiseAbs().maxCoeff());
+    }
+  }
+  return 0.999 / largest_curvature;
+}
+
+/// The same for a surface of revolution around the x3 axis, symmetric to its equator, from its profile
+/// (distance from the axis, x3) over the latitude 0, ..., pi/2.
+template <class Profile>
+double profile_curvature_radius(const Surface& surface, Profile profile) {
+  const auto point = [&](double s, double) {
+    const auto [rho, x3] = profile(s * pi / 2);
+    return Vec3(rho, 0, x3);
+  };
+  return sampled_curvature_radius(surface, point, 2000, 1);
+}
+
+}  // namespace
+
+Surface perturbed_torus(double major, double minor, double amplitude, int waves) {
+  auto d = [=](const auto& x1, const auto& x2, const auto& x3) {
+    using std::sqrt;
+    // The tiny number keeps d finite on the axis, where the angle u is undefined.
+    const auto rho = sqrt(x1 * x1 + x2 * x2 + 1e-30);
+    const auto cosine = x1 / rho, sine = x2 / rho;
+    auto re = cosine, im = sine;  // of exp(i k u), k = 1, ..., waves
+    for (int k = 1; k < waves; ++k) {
+      const auto previous = re;
+      re = re * cosine - im * sine;
+      im = previous * sine + im * cosine;
+    }
+    const auto from_circle = rho - major, tube = amplitude * re + minor;
+    return (from_circle * from_circle + x3 * x3 - tube * tube) / (2.0 * minor);
+  };
+  Surface surface =
+      make_surface("perturbed_torus", d, major + minor + amplitude, minor, 0,
+                   {{"major", major}, {"minor", minor}, {"amplitude", amplitude}, {"waves", waves}});
+  const auto point = [=](double s, double t) {
+    const double u = pi * s / waves, v = pi * t, tube = minor + amplitude * std::cos(waves * u);
+    const double rho = major + tube * std::cos(v);
+    return Vec3(rho * std::cos(u), rho * std::sin(u), tube * std::sin(v));
+  };
+  surface.smallest_curvature_radius = sampled_curvature_radius(surface, point, 100, 100);
+  return surface;
+}
+
+Surface red_blood_cell() {
+  auto d = [](const auto& x1, const auto& x2, const auto& x3) {
+    const auto s = 1.0 - 0.25 * (x1 * x1 + x2 * x2);
+    const auto height = 1.0 - 0.7 * s * s;
+    return x3 * x3 - s * height * height;
+  };
+  // d has zeros of its own at rho = 2.96, outside the bounding ball (d does not change its sign there).
+  Surface surface = make_surface("red_blood_cell", d, 2, 1, 2);
+  surface.smallest_curvature_radius = profile_curvature_radius(surface, [](double latitude) {
+    const double s = std::pow(std::sin(latitude), 2);
+    return std::pair(2 * std::cos(latitude), (1 - 0.7 * s * s) * std::sin(latitude));
+  });
+  return surface;
+}
+
+Surface evans_fung_cell() {
+  const auto height = [](const auto& s) { return 0.5 * (0.207161 + s * (2.002558 - 1.122762 * s)); };
+  auto d = [height](const auto& x1, const auto& x2, const auto& x3) {
+    const auto s = x1 * x1 + x2 * x2;
+    const auto h = height(s);
+    return 2.0 * (x3 * x3 - (1.0 - s) * h * h);
+  };
+  // d has zeros of its own at rho = 1.37, outside the bounding ball (d does not change its sign there).
+  Surface surface = make_surface("evans_fung_cell", d, 1, 1, 2);
+  surface.smallest_curvature_radius = profile_curvature_radius(surface, [height](double latitude) {
+    const double rho = std::cos(latitude);
+    return std::pair(rho, std::sin(latitude) * height(rho * rho));
+  });
+  return surface;
 }
 
 }  // namespace esfem

@@ -134,5 +134,15 @@ Surface ellipsoid(double a, double b, double c);
 Surface torus(double major, double minor);
 /// kll19 §13.2: d = x1² + x2² + 2 x3² (x3² - 199/200) - 0.04
 Surface dumbbell();
+/// Torus around the x3 axis whose tube has the radius minor + amplitude cos(waves u), u the angle around the
+/// axis: {(rho - major)² + x3² = (tube radius)²}, rho² = x1² + x2². |grad d| is about 1. amplitude < minor,
+/// minor + amplitude < major.
+Surface perturbed_torus(double major, double minor, double amplitude, int waves);
+/// {x3² = s (1 - 0.7 s²)², s = 1 - (x1² + x2²)/4}: the biconcave surface (2 cos p cos t, 2 cos p sin t,
+/// (1 - 0.7 (cos² p - 1)²) sin p).
+Surface red_blood_cell();
+/// The resting red blood cell that Evans & Fung (Microvasc. Res. 4, 1972) measured, with equatorial radius 1:
+/// x3 = ±(1/2) sqrt(1 - s) (C0 + C2 s + C4 s²), s = x1² + x2².
+Surface evans_fung_cell();
 
 }  // namespace esfem
