@@ -85,7 +85,7 @@ void add_runs(const std::string& kind, const std::vector<std::string>& projectio
 std::vector<Run> preset_runs(const std::string& preset) {
   const bool paper = preset == "paper";
   std::vector<Run> runs;
-  add_runs("convergence", known_projections, paper ? range(0, 4) : range(0, 2),
+  add_runs("convergence", known_projections, paper ? range(0, 4) : range(0, 3),
            paper ? range(0, 6) : range(1, 3), runs);
   add_runs("normals", known_projections, {0}, {3}, runs);
   add_runs("accuracy", {"projected"}, {0}, {2}, runs);
