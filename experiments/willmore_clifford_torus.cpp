@@ -90,8 +90,9 @@ std::vector<Run> preset_runs(const std::string& preset) {
   add_runs({"convergence", "isothermal", "extrapolated", "no", 1}, paper ? grids : range(0, 3),
            paper ? range(0, 6) : range(1, 2), runs);
   if (!paper) add_runs({"convergence", "isothermal", "extrapolated", "no", 1}, grids, {3}, runs);
-  add_runs({"convergence", "graded", "extrapolated", "no", 1}, paper ? range(0, 3) : range(0, 1),
+  add_runs({"convergence", "graded", "extrapolated", "no", 1}, range(0, paper ? 3 : 1),
            paper ? range(1, 4) : range(1, 3), runs);
+  if (paper) add_runs({"convergence", "graded", "extrapolated", "no", 1}, range(0, 2), {5, 6}, runs);
   add_runs({"convergence", "isothermal", "extrapolated", "yes", 1}, range(1, paper ? 5 : 3), {3}, runs);
   add_runs({"convergence", "isothermal", "extrapolated", "no", 2}, range(1, paper ? 5 : 3), {3}, runs);
   for (int bdf : {1, 2}) {
