@@ -198,12 +198,12 @@ std::string cell_name(const Run& run) {
   return kind + "_" + run.projection + format("_h%d_tau%d", run.level, run.k);
 }
 
-/// Seconds on one core: a step with its errors takes about 15 microseconds a node, a mesh about 0.2 ms a
+/// Seconds on one core: a step with its errors takes about 8 microseconds a node, a mesh about 0.2 ms a
 /// vertex.
 double estimated_cost(const Setting& setting, const Run& run) {
   const double vertices = 27.5 / std::pow(edge_length(largest_h.at(run.kind), run.level), 2);
   const double nodes = vertices * setting.degree * setting.degree;
-  return 0.1 + vertices * 2e-4 + nodes * time_steps(run).count(run.k) * 15e-6;
+  return 0.1 + vertices * 2e-4 + nodes * time_steps(run).count(run.k) * 8e-6;
 }
 
 std::vector<Cell> cells(const Setting& setting) {
