@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <memory>
-
-#include "solver/assembly/surface_space.hpp"
+#include "solver/flows/bgn_system.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
@@ -28,16 +26,16 @@ class BgnFlow {
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
   explicit BgnFlow(const SurfaceSpace& space);
-  ~BgnFlow();
 
   /// One step; q must be 1 (InputError), the scheme is of first order. Throws SingularityError where the
   /// surface is singular or no longer resolved (regularity.hpp).
   void step(const History<State>& history, int q, double tau, State& next);
 
  private:
-  struct System;
   const SurfaceSpace& space_;
-  std::unique_ptr<System> system_;
+  BgnSystem system_;
+  SymmetricMatrix tau_M_;
+  Field zero_;
 };
 
 /// The state on nodes x at time 0, with v = -M(x)^-1 A(x) x and H the projection of -v onto the discrete
