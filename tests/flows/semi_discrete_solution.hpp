@@ -38,7 +38,8 @@ class SemiDiscreteSolution {
               [this](int n, const State& state) { states_[n] = state; });
   }
 
-  /// Largest nodal L2 error of a field over the steps n >= q of a run with the given number of steps.
+  /// Largest nodal L2 error of a field over the steps n >= q of a run with the given number of
+  /// steps.
   double error(int q, int steps, const Start& start, Field State::*field) {
     SymmetricMatrix M = space_.matrix(), A = space_.matrix();
     const auto starting_values = [&](double t) { return states_.at(std::lround(t / end_time * fine_steps)); };
