@@ -73,7 +73,8 @@ def _figure(rows, strip, notes):
         every = max(len(t) // 8, 1)
         line = {**line, "markevery": (min(i * every // len(rows), len(t) - 1), every)}  # markers side by side
         areas.append(time_series.draw_series(left, row, "area", line, (0, np.inf)))
-        drifts.append(time_series.draw_series(middle, row, "volume", line, (0, np.inf), _drift))
+        # The first steps, where nothing has changed yet, would make the axis long.
+        drifts.append(time_series.draw_series(middle, row, "volume", line, (t[-1] / 50, np.inf), _drift))
         elongations.append(time_series.draw_series(right, row, "elongation", line, (0, np.inf), time_series.positive))
         end = max(end, max(t))
     volumes = [found[1][0] for found in (series(row, "volume") for row in rows[::-1]) if found]

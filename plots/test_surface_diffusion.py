@@ -69,7 +69,7 @@ class SurfaceDiffusion(unittest.TestCase):
         legend = [text.get_text() for text in figure.legends[0].get_texts()]
         self.assertEqual(set(legend), {r"paper, $\tau = 0.05$", r"paper, $\tau = 0.025$", r"paper, $\tau = 0.0125$",
                                        r"relaxed, $\tau = 0.025$"})
-        self.assertTrue(any(text.startswith("$N = 4{,}104$") for text in texts_of(figure)))
+        self.assertIn("$N = 4{,}104$. Fixed steps", texts_of(figure))
         self.assertEqual((area.get_yscale(), volume.get_yscale()), ("linear", "log"))
         self.assertIn("volume, $|V(t) / V(0) - 1|$", texts_of(figure))
         self.assertIn("area; dashed: sphere", texts_of(figure))
