@@ -20,14 +20,16 @@ def diffusion_row(level, k, **changes):
     t = np.arange(0, 2 + tau / 2, tau)
     volume = 4.8 * (1 + 1e-2 * tau**2 * (1 - np.exp(-3 * t)))
     area = (36 * math.pi * 4.8**2)**(1 / 3) * (1 + 0.1 * np.exp(-3 * t))
-    return {"cell": f"h{level}_tau{k}", "level": level, "h": 0.4 / 2**level, "nodes": 1026 * 4**level, "tau": tau,
+    return {"cell": f"h{level}_tau{k}", "setting": "paper", "level": level, "h": 0.4 / 2**level, "nodes": 1026 * 4**level, "tau": tau,
             "steps": len(t) - 1, "status": "ok", "errors": {},
-            "series": {"t": t.tolist(), "area": area.tolist(), "volume": volume.tolist()},
+            "series": {"t": t.tolist(), "area": area.tolist(), "volume": volume.tolist(),
+                       "elongation": np.exp(-3 * t).tolist()},
             "snapshots": [{"t": t, "file": f"surfaces_{i:04d}.vtu"} for i, t in enumerate(TIMES)], **changes}
 
 
 def diffusion_table():
     rows = [diffusion_row(level, k) for level in range(2) for k in range(3)]
+    rows += [diffusion_row(level, 1, cell=f"relaxed_h{level}", setting="relaxed", snapshots=[]) for level in range(2)]
     return {"schema": SCHEMA, "experiment": "surface_diffusion", "paper": "kll21", "parameters": {}, "rows": rows}
 
 
@@ -55,27 +57,27 @@ class SurfaceDiffusion(unittest.TestCase):
     def panels(self, figure):
         return [axes for axes in figure.axes if axes.get_xlabel() == "$t$"]
 
-    def test_surfaces_of_the_finest_run_above_area_and_volume_of_all(self):
+    def test_surfaces_of_the_finest_run_above_area_volume_and_elongation(self):
         figure = self.draw(diffusion_table()["rows"])
-        area, volume = self.panels(figure)
+        area, volume, elongation = self.panels(figure)
         pictures = [axes for axes in figure.axes if axes.collections]
         self.assertEqual(len(pictures), 5)
         self.assertGreater(min(axes.get_position().y0 for axes in pictures), area.get_position().y1)
         for t in TIMES:
             self.assertIn(f"$t = {t:.3g}$", texts_of(figure))
-        self.assertEqual([len(data_lines(axes)) for axes in (area, volume)], [6, 6])
+        self.assertEqual([len(data_lines(axes)) for axes in (area, volume, elongation)], [4, 4, 4])
         legend = [text.get_text() for text in figure.legends[0].get_texts()]
-        expected = {rf"$N = {nodes}$, $\tau = {tau:.3g}$" for nodes in ("1{,}026", "4{,}104")
-                    for tau in (0.05, 0.025, 0.0125)}
-        self.assertEqual(set(legend), expected)
+        self.assertEqual(set(legend), {r"paper, $\tau = 0.05$", r"paper, $\tau = 0.025$", r"paper, $\tau = 0.0125$",
+                                       r"relaxed, $\tau = 0.025$"})
+        self.assertIn("$N = 4{,}104$. Fixed steps", texts_of(figure))
         self.assertEqual((area.get_yscale(), volume.get_yscale()), ("linear", "log"))
-        self.assertIn("relative change of the volume, $|V(t) / V(0) - 1|$", texts_of(figure))
-        self.assertIn("area; dashed: of the sphere of the same volume", texts_of(figure))
+        self.assertIn("volume, $|V(t) / V(0) - 1|$", texts_of(figure))
+        self.assertIn("area; dashed: sphere", texts_of(figure))
 
     def test_the_limit_of_the_area_is_that_of_the_sphere_of_equal_volume(self):
         ball = 4 / 3 * math.pi * 1.5**3
         row = diffusion_row(0, 0, snapshots=[], series={"t": [0, 1], "area": [30, 29], "volume": [ball, ball * 1.001]})
-        area, volume = self.panels(self.draw([row]))
+        area, volume, _ = self.panels(self.draw([row]))
         self.assertAlmostEqual(limits_of(area)[0], 4 * math.pi * 1.5**2)
         shown = data_lines(volume)[0].get_ydata()
         self.assertTrue(math.isnan(shown[0]))
@@ -83,13 +85,13 @@ class SurfaceDiffusion(unittest.TestCase):
 
     def test_missing_series_snapshots_and_runs(self):
         rows = diffusion_table()["rows"]
-        del rows[0]["series"]["volume"]
+        del rows[3]["series"]["volume"]
         rows[1].update(status="failed: why", series={}, snapshots=[], h=0, nodes=0)
-        rows[2].update(status="singular at t = 1 (step 9): why")
+        rows[5].update(status="singular at t = 1 (step 9): why")
         figure = self.draw(rows)
-        self.assertEqual([len(data_lines(axes)) for axes in self.panels(figure)], [5, 4])
-        self.assertIn("1 of 6 runs failed: h0_tau1.", texts_of(figure))
-        self.assertIn("Stopped early, as singular: h0_tau2.", texts_of(figure))
+        self.assertEqual([len(data_lines(axes)) for axes in self.panels(figure)], [4, 3, 4])
+        self.assertIn("1 of 8 runs failed: h0_tau1.", texts_of(figure))
+        self.assertIn("Stopped early, as singular: h1_tau2.", texts_of(figure))
         figure = self.draw([diffusion_row(0, 0, snapshots=[])])
         self.assertFalse([axes for axes in figure.axes if axes.collections])
         with self.assertRaisesRegex(TableError, "h0_tau0/surfaces_0000.vtu: no such snapshot"):

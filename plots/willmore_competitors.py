@@ -6,6 +6,7 @@ Writes figures/gallery/willmore_competitors.{pdf,png}: errors of the surface ove
 and how far the energy is from its limit.
 """
 import numpy as np
+from matplotlib import ticker
 
 import style
 import time_series
@@ -77,6 +78,7 @@ def _figure(panels, errors, energies, notes):
                 end = max(end, max(row["series"]["t"]))
             time_series.scale(axes, np.concatenate(values), logarithmic=True)
             axes.set_xlim(0, end or 1)
+            axes.xaxis.set_major_locator(ticker.MaxNLocator(4, prune="upper"))  # a label at the end would be cut off
             if i == 0:
                 axes.set_ylabel(label, labelpad=2)
     return figure
