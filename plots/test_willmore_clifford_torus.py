@@ -22,9 +22,11 @@ def torus_row(level, k, size, **labels):
 
 
 def torus_table(levels=4, exponents=6):
-    rows = [torus_row(level, k, size, run="convergence", mesh=mesh, F="extrapolated", bdf="1")
-            for mesh, size in (("graded", 1), ("isothermal", 7)) for level in range(levels) for k in range(exponents)]
-    rows.append(torus_row(0, 0, 50, run="convergence", mesh="graded", F="implicit", bdf="1"))
+    rows = [torus_row(level, k, size, run="convergence", mesh=mesh, F="extrapolated", bdf="1", theta="no")
+            for mesh, size in (("isothermal", 1), ("graded", 7)) for level in range(levels) for k in range(exponents)]
+    rows.append(torus_row(0, 0, 50, run="convergence", mesh="isothermal", F="implicit", bdf="1", theta="no"))
+    rows.append(torus_row(0, 0, 60, run="convergence", mesh="isothermal", F="extrapolated", bdf="1", theta="yes"))
+    rows.append(torus_row(0, 0, 70, run="convergence", mesh="isothermal", F="extrapolated", bdf="2", theta="no"))
     for F in ("extrapolated", "implicit"):
         for bdf in ("1", "2"):
             for k in range(exponents):
@@ -48,8 +50,8 @@ class CliffordTorus(unittest.TestCase):
         cls.table = torus_table()
         cls.figures = dict(willmore_clifford_torus.draw(cls.table, "nodal_H1"))
 
-    def test_figure_7_4_has_the_graded_meshes_and_extrapolated_F(self):
-        self.assertEqual(list(self.figures), ["kll21/fig7_4", "gallery/clifford_torus_stability"])
+    def test_figure_7_4_has_the_isothermal_grids_and_extrapolated_F(self):
+        self.assertEqual(list(self.figures), ["kll21/fig7_4", "gallery/clifford_torus_graded", "gallery/clifford_torus_stability"])
         figure = self.figures["kll21/fig7_4"]
         self.assertEqual([len(data_lines(axes)) for axes in figure.axes], [6] * 4)
         shown = max(line.get_ydata().max() for line in data_lines(figure.axes[0]))
@@ -89,7 +91,7 @@ class CliffordTorus(unittest.TestCase):
 
     def test_small_and_failed_tables(self):
         for levels, exponents in ((1, 1), (2, 1)):
-            self.assertEqual(len(dict(willmore_clifford_torus.draw(torus_table(levels, exponents), "lifted_H1"))), 2)
+            self.assertEqual(len(dict(willmore_clifford_torus.draw(torus_table(levels, exponents), "lifted_H1"))), 3)
         table = torus_table(1, 2)
         for row in table["rows"]:
             row.update(status="failed: why", errors={}, values={})
@@ -109,7 +111,8 @@ class CliffordTorus(unittest.TestCase):
             self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
             written = sorted(os.path.relpath(os.path.join(root, name), folder + "/figures")
                              for root, _, names in os.walk(folder + "/figures") for name in names)
-            self.assertEqual(written, [f"{name}.{kind}" for name in ("gallery/clifford_torus_stability", "kll21/fig7_4")
+            self.assertEqual(written, [f"{name}.{kind}" for name in ("gallery/clifford_torus_graded",
+                                                              "gallery/clifford_torus_stability", "kll21/fig7_4")
                                        for kind in ("pdf", "png")])
 
 
