@@ -10,16 +10,34 @@
 
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/flows/willmore_flow.hpp"
 #include "solver/time/adaptive.hpp"
 
 namespace esfem {
 namespace {
 
 namespace fs = std::filesystem;
-using State = MeanCurvatureFlow::State;
 
 struct Stopped : std::exception {};
 
+MeanCurvatureFlow make_flow(const SurfaceSpace& space, const MeanCurvatureFlow*) {
+  return {space, MeanCurvatureFlow::Variant()};
+}
+MeanCurvatureFlow::State start_of(const SurfaceSpace&, const Surface& surface, const Field& x,
+                                  const MeanCurvatureFlow*) {
+  return mean_curvature_state_on(surface, x);
+}
+WillmoreFlow make_flow(const SurfaceSpace& space, const WillmoreFlow*) {
+  WillmoreFlow::Variant variant;
+  variant.relaxation = 20;
+  return {space, variant};
+}
+WillmoreFlow::State start_of(const SurfaceSpace& space, const Surface& surface, const Field& x,
+                             const WillmoreFlow*) {
+  return willmore_start_on(space, surface, x, WillmoreFlow::Variant::willmore, false).state;
+}
+
+template <class State>
 struct Outcome {
   int observed = 0;
   State last;
@@ -29,7 +47,10 @@ struct Outcome {
   std::map<std::string, std::string> files;  ///< with their bytes
 };
 
-struct ResumedRun : testing::TestWithParam<bool> {
+template <class Flow>
+struct ResumedRun : testing::Test {
+  using State = typename Flow::State;
+  using Outcome = esfem::Outcome<State>;
   static constexpr int never = -1;
   fs::path folder = fs::path(testing::TempDir()) / ("esfem_resumed_" + std::to_string(getpid()));
   fs::path results = folder / "results";
@@ -41,11 +62,11 @@ struct ResumedRun : testing::TestWithParam<bool> {
   }
   ~ResumedRun() override { fs::remove_all(folder); }
 
-  Outcome run(int stop) const {
+  Outcome run(int stop, bool adaptive) const {
     const SurfaceSpace space(mesh);
-    MeanCurvatureFlow flow(space, {});
+    Flow flow = make_flow(space, static_cast<const Flow*>(nullptr));
     RunRecorder recorder(space, {(results / "run.pvd").string(), {0.011, 0.05, 0.07}, 7});
-    Checkpoint checkpoint((folder / "run.checkpoint").string(), {{"flow", "mean_curvature"}}, 0);
+    Checkpoint checkpoint((folder / "run.checkpoint").string(), {{"run", "of a test"}}, 0);
     attach(checkpoint, recorder);
     Outcome outcome;
     const auto observe = [&](int n, const State& state) {
@@ -54,9 +75,10 @@ struct ResumedRun : testing::TestWithParam<bool> {
       outcome.last = state;
       ++outcome.observed;
     };
-    const State initial = mean_curvature_state_on(ellipsoid(1, 1, 0.8), mesh.nodes);
+    const State initial =
+        start_of(space, ellipsoid(1, 1, 0.8), mesh.nodes, static_cast<const Flow*>(nullptr));
     try {
-      if (GetParam())
+      if (adaptive)
         integrate_adaptive(flow, {2, 0.1, 1e-3, 1e-4, 0}, initial, &State::x, observe, &checkpoint);
       else
         integrate(flow, {3, 0.004, 25, {Start::substeps, 4}}, initial, {}, observe, &checkpoint);
@@ -77,37 +99,41 @@ struct ResumedRun : testing::TestWithParam<bool> {
   }
 };
 
-TEST_P(ResumedRun, EqualsTheOneThatWasNotStopped) {
-  const Outcome whole = run(never);
-  EXPECT_GE(whole.snapshots.size(), 5u);
-  fs::remove_all(results);
-  const int steps = whole.observed - 1;
-  ASSERT_GT(steps, 15);
-  run(14);  // its snapshot is written, and not in the checkpoint
-  run(steps - 1);
-  ASSERT_TRUE(fs::exists(folder / "run.checkpoint"));
-  const Outcome resumed = run(never);
-  EXPECT_EQ(resumed.observed, 2);
-  EXPECT_FALSE(fs::exists(folder / "run.checkpoint"));
-  for (const NamedField<State>& field : State::fields)
-    EXPECT_EQ(resumed.last.*field.member, whole.last.*field.member) << field.name;
-  EXPECT_EQ(resumed.series, whole.series);
-  EXPECT_EQ(resumed.snapshots, whole.snapshots);
-  EXPECT_EQ(resumed.files, whole.files);
+using Flows = testing::Types<MeanCurvatureFlow, WillmoreFlow>;
+TYPED_TEST_SUITE(ResumedRun, Flows);
+
+TYPED_TEST(ResumedRun, EqualsTheOneThatWasNotStopped) {
+  for (const bool adaptive : {false, true}) {
+    const auto whole = this->run(this->never, adaptive);
+    EXPECT_GE(whole.snapshots.size(), 5u);
+    fs::remove_all(this->results);
+    const int steps = whole.observed - 1;
+    ASSERT_GT(steps, 15);
+    this->run(14, adaptive);  // its snapshot is written, and not in the checkpoint
+    this->run(steps - 1, adaptive);
+    ASSERT_TRUE(fs::exists(this->folder / "run.checkpoint"));
+    const auto resumed = this->run(this->never, adaptive);
+    EXPECT_EQ(resumed.observed, 2);
+    EXPECT_FALSE(fs::exists(this->folder / "run.checkpoint"));
+    for (const auto& field : TypeParam::State::fields)
+      EXPECT_EQ(resumed.last.*field.member, whole.last.*field.member) << field.name;
+    EXPECT_EQ(resumed.series, whole.series);
+    EXPECT_EQ(resumed.snapshots, whole.snapshots);
+    EXPECT_EQ(resumed.files, whole.files);
+  }
 }
 
-TEST_P(ResumedRun, StartsAfreshWhenASnapshotIsGone) {
-  const Outcome whole = run(never);
-  run(9);
-  fs::remove(results / "run_0001.vtu");
-  const Outcome again = run(never);
-  EXPECT_EQ(again.observed, whole.observed);
-  EXPECT_EQ(again.series, whole.series);
-  EXPECT_EQ(again.files, whole.files);
+TYPED_TEST(ResumedRun, StartsAfreshWhenASnapshotIsGone) {
+  for (const bool adaptive : {false, true}) {
+    const auto whole = this->run(this->never, adaptive);
+    this->run(9, adaptive);
+    fs::remove(this->results / "run_0001.vtu");
+    const auto again = this->run(this->never, adaptive);
+    EXPECT_EQ(again.observed, whole.observed);
+    EXPECT_EQ(again.series, whole.series);
+    EXPECT_EQ(again.files, whole.files);
+  }
 }
-
-INSTANTIATE_TEST_SUITE_P(Steps, ResumedRun, testing::Values(false, true),
-                         [](const auto& steps) { return steps.param ? "adaptive" : "equal"; });
 
 }  // namespace
 }  // namespace esfem
