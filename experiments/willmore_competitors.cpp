@@ -15,10 +15,12 @@
 // the same meshes, with elements of degree 1 and 2 (the theory of kll21 begins with 2). nu and H of the older
 // schemes, which have none or only H, are those of the discrete surface. The nodes of Dziuk's scheme and of
 // BGN's move along the surface, which counts as an error of x; `distance` is that of the nodes from the exact
-// surface.
+// surface. Energies are recorded 50 times a run.
 //
-// Expected: the older schemes move to a discrete surface of smaller discrete energy, kll21 stays where it is.
-// Dziuk's scheme needs tau <= h²/1000 or less, the others do not.
+// Expected: the older schemes move to a discrete surface of smaller discrete energy, kll21 stays where it is,
+// nearer by a factor of 100 and more. Dziuk's scheme with elements of degree 2 needs tau <= h²/1000 or less,
+// the others do not. With linear elements BGN's nodes go on sliding by the same way in each step, however
+// small it is.
 #include <algorithm>
 #include <cmath>
 #include <ctime>
@@ -105,7 +107,7 @@ void add_runs(const std::vector<std::string>& surfaces, const std::vector<std::s
 
 std::vector<Run> preset_runs(const std::string& preset) {
   std::vector<Run> runs;
-  const std::vector<std::string> bgn = {"bgn"}, kll21 = {"kll21"}, dziuk = {"dziuk"}, all = known_schemes;
+  const std::vector<std::string> bgn = {"bgn"}, kll21 = {"kll21"}, all = known_schemes;
   const auto add = [&](const char* surface, const std::vector<std::string>& schemes, int degree, int k) {
     add_runs({surface}, schemes, {degree}, {0}, {k}, runs);
   };
@@ -113,6 +115,7 @@ std::vector<Run> preset_runs(const std::string& preset) {
   add("sphere", all, 2, 3);
   add("ellipsoid", all, 1, 3);
   add("ellipsoid", all, 2, 0);
+  for (const int k : range(0, preset == "paper" ? 4 : 2)) add("clifford_torus", bgn, 1, k);
   if (preset == "paper") {
     add("ellipsoid", all, 2, 5);
     add("clifford_torus", all, 1, 5);

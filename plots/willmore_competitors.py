@@ -78,7 +78,8 @@ def _figure(panels, errors, energies, notes):
                 end = max(end, max(row["series"]["t"]))
             time_series.scale(axes, np.concatenate(values), logarithmic=True)
             axes.set_xlim(0, end or 1)
-            axes.xaxis.set_major_locator(ticker.MaxNLocator(4, prune="upper"))  # a label at the end would be cut off
+            # A label at the very end would be cut off.
+            axes.xaxis.set_major_locator(ticker.MaxNLocator(4, steps=[1, 2, 5, 10], prune="upper"))
             if i == 0:
                 axes.set_ylabel(label, labelpad=2)
     return figure
@@ -105,6 +106,10 @@ def _which(variants, every):
     return f" ({'; '.join(_label(*variant) for variant in variants)})"
 
 
+def _number(tau):
+    return f"{tau:.3g}" if tau >= 1e-4 else style.power_of_ten(tau).strip("$")
+
+
 def _notes(runs, rows):
     """Mesh and step size of the runs, what the energies are, and which runs are missing."""
     notes = []
@@ -112,7 +117,7 @@ def _notes(runs, rows):
         settings = {}
         for (of, *variant), row in runs.items():
             if of == surface:
-                setting = rf"{style.nodes_label(row['nodes'])}, $\tau = {row['tau']:.3g}$"
+                setting = rf"{style.nodes_label(row['nodes'])}, $\tau = {_number(row['tau'])}$"
                 settings.setdefault(setting, []).append(tuple(variant))
         if settings:
             every = [variant for variants in settings.values() for variant in variants]
