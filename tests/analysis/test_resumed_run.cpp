@@ -104,6 +104,7 @@ TYPED_TEST_SUITE(ResumedRun, Flows);
 
 TYPED_TEST(ResumedRun, EqualsTheOneThatWasNotStopped) {
   for (const bool adaptive : {false, true}) {
+    fs::remove_all(this->results);
     const auto whole = this->run(this->never, adaptive);
     EXPECT_GE(whole.snapshots.size(), 5u);
     fs::remove_all(this->results);
@@ -125,6 +126,7 @@ TYPED_TEST(ResumedRun, EqualsTheOneThatWasNotStopped) {
 
 TYPED_TEST(ResumedRun, StartsAfreshWhenASnapshotIsGone) {
   for (const bool adaptive : {false, true}) {
+    fs::remove_all(this->results);
     const auto whole = this->run(this->never, adaptive);
     this->run(9, adaptive);
     fs::remove(this->results / "run_0001.vtu");
