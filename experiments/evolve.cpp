@@ -5,6 +5,7 @@
 // Sample runs:  build/bin/evolve reference/examples/sphere.json
 //               build/bin/evolve reference/examples/dumbbell.json
 //               build/bin/evolve reference/examples/tumour.json
+//               build/bin/evolve reference/examples/willmore.json
 //
 // Writes the nodal values at the end, a time series and snapshots, as the file says; `evolve --help` explains
 // its keys.

@@ -145,6 +145,62 @@ TEST_F(Evolve, GrowsATumourOnAnySurface) {
   EXPECT_THAT(message, HasSubstr("known are D, a, alpha"));
 }
 
+TEST_F(Evolve, RunsFlowsOfFourthOrder) {
+  json willmore = config({{"flow", "willmore"}, {"start", "cascade"}});
+  ASSERT_EQ(run(willmore), exit_done) << message;
+  const json end = read_json(nodal), history = read_json(series);
+  EXPECT_NEAR(history.at("willmore_energy")[4].get<double>(), 8 * std::acos(-1.0), 0.05);
+  EXPECT_EQ(history.at("kappa_energy").size(), 5u);
+  for (const char* key : {"v", "nu", "H", "V", "z"}) EXPECT_EQ(end.at(key).size(), end.at("x").size());
+  EXPECT_NEAR(end.at("H")[0].get<double>(), 2, 1e-12) << "with theta the sphere is stationary";
+  willmore["variant"] = {{"theta", false}};
+  ASSERT_EQ(run(willmore), exit_done) << message;
+  EXPECT_GT(std::abs(read_json(nodal).at("H")[0].get<double>() - 2), 1e-9);
+
+  json diffusion = willmore;
+  diffusion["flow"] = "surface_diffusion";
+  diffusion["surface"] = {{"name", "ellipsoid"}};
+  diffusion["mesh"] = {{"subdivisions", 2}};
+  diffusion["tau"] = 1e-4;
+  ASSERT_EQ(run(diffusion), exit_done) << message;
+  const json volume = read_json(series).at("volume"), area = read_json(series).at("area");
+  EXPECT_NEAR(volume[4].get<double>() / volume[0].get<double>(), 1, 1e-4);
+  EXPECT_LT(area[4].get<double>(), area[0].get<double>());
+}
+
+TEST_F(Evolve, ThetaNeedsASurface) {
+  const std::string file = std::string(ESFEM_SOURCE_DIR) + "/reference/independent/ellipsoid_362.msh";
+  json willmore =
+      config({{"flow", "willmore"}, {"tau", 1e-4}, {"mesh", {{"subdivisions", nullptr}, {"file", file}}}});
+  willmore.erase("surface");
+  ASSERT_EQ(run(willmore), exit_done) << message;
+  EXPECT_THAT(message, HasSubstr("computed on the discrete surface"));
+  willmore["variant"] = {{"theta", true}};
+  EXPECT_EQ(run(willmore), exit_usage);
+  EXPECT_THAT(message, HasSubstr("theta needs exact initial data"));
+}
+
+TEST_F(Evolve, TakesAdaptiveStepsWithEveryFlow) {
+  for (const char* flow : {"mean_curvature", "dziuk", "bgn", "willmore", "coupled_diffusion"}) {
+    json adaptive = config({{"flow", flow}, {"adaptive", {{"end_time", 0.02}, {"first_step", 1e-4}}}});
+    for (const char* key : {"tau", "steps", "bdf"}) adaptive.erase(key);
+    ASSERT_EQ(run(adaptive), exit_done) << flow << ": " << message;
+    const json t = read_json(series).at("t");
+    EXPECT_EQ(t.back().get<double>(), 0.02) << flow;
+    ASSERT_GT(t.size(), 4u);
+    EXPECT_GT(t[3].get<double>() - t[2].get<double>(), t[1].get<double>()) << flow << ": steps grow";
+  }
+}
+
+TEST_F(Evolve, AFinishedRunLeavesNoCheckpointAndIsTheSameWithOne) {
+  ASSERT_EQ(run(config()), exit_done) << message;
+  const json plain = read_json(nodal).at("x");
+  const std::string checkpoint = (folder / "run.checkpoint").string();
+  ASSERT_EQ(run(config({{"output", {{"checkpoint", checkpoint}}}})), exit_done) << message;
+  EXPECT_EQ(read_json(nodal).at("x"), plain);
+  EXPECT_FALSE(std::filesystem::exists(checkpoint));
+}
+
 TEST_F(Evolve, WritesSnapshotsAtTheTimesAskedFor) {
   const std::string pvd = (folder / "snapshots/run.pvd").string();
   const json output = {{"vtu", pvd}, {"times", {0.015}}};
@@ -188,7 +244,17 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"quadrature", {{"gauss", 3}}}}, "known are conical, degree"},
       {{{"variant", {{"velocity", "exact"}}}}, "ritz or interpolation"},
       {{{"variant", {{"normalise", 1}}}}, "true or false"},
-      {{{"output", {{"vtk", "a"}}}}, "known are every, nodal, series, times, vtu"},
+      {{{"adaptive", {{"end_time", 1}}}}, "found adaptive and tau"},
+      {{{"adaptive", {{"end_time", 1}, {"tol", 1}}}, {"tau", nullptr}, {"steps", nullptr}}, "'tol'"},
+      {{{"adaptive", {{"end_time", 1}, {"tolerance", 0}}}, {"tau", nullptr}, {"steps", nullptr}},
+       "tolerance = 0"},
+      {{{"adaptive", {{"end_time", 1}}}, {"tau", nullptr}, {"steps", nullptr}, {"bdf", 3}},
+       "bdf = 3; expected 1 to 2"},
+      {{{"flow", "willmore"}, {"variant", {{"F", "explicit"}}}}, "extrapolated, implicit"},
+      {{{"flow", "willmore"}, {"variant", {{"relaxation", -1}}}}, "relaxation = -1"},
+      {{{"flow", "surface_diffusion"}, {"variant", {{"normalise", true}}}},
+       "known are F, project, relaxation, theta"},
+      {{{"output", {{"vtk", "a"}}}}, "known are checkpoint, every, nodal, series, times, vtu"},
   };
   for (const auto& [changes, expected] : bad) {
     EXPECT_EQ(run(config(changes)), exit_usage) << changes;
