@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Orders in time of the scheme for Willmore flow, with and without the projections of kll21 §7.1
+//
+// Sample runs:  build/bin/willmore_time_orders --preset check --output orders.json
+//               build/bin/willmore_time_orders --bdf 3 --steps 4-6 --projection none
+//
+// Writes:       results/paper/willmore_time_orders.{json,csv,tex}
+//
+// The ellipsoid with half axes 2, 2, 1.6 under Willmore flow, kll21 (3.4)-(3.5) with quadratic elements on
+// one mesh, BDF 1 to 4. Errors of x, u = (H, nu) and w = (V, z) against BDF5 with 1,024 steps on the same
+// mesh, which gives the starting values, too. Time counts from 0.1 on: what the interpolation of the exact
+// initial values leaves in the fast modes has died out then, and within that layer no method shows its order.
+//
+// Expected: order q of BDF q without projections. Projecting nu_h and z_h after each step changes the
+// solution by a jump that does not vanish with the step size, and the order is lost.
+#include <cmath>
+
+#include "experiments/harness/experiment.hpp"
+#include "experiments/harness/grid.hpp"
+#include "experiments/harness/method_options.hpp"
+#include "solver/analysis/errors.hpp"
+#include "solver/error.hpp"
+#include "solver/flows/willmore_flow.hpp"
+
+namespace {
+
+using namespace esfem;
+using State = WillmoreFlow::State;
+
+const HalvedSteps time_steps{0.4, 0.1};
+const int reference_k = 8;  ///< tau = 0.4/1,024
+const std::vector<std::string> known_projections = {"none", "projected"};
+
+struct OwnOptions {
+  std::vector<std::string> projections = known_projections;
+};
+
+struct Setting {
+  int degree;
+  std::vector<int> orders, steps;
+  std::vector<std::string> projections;
+};
+
+Setting resolve(const Options& options, const OwnOptions& own) {
+  if (!options.meshes.empty() || options.start || options.levels) {
+    throw InputError(
+        "--mesh, --start, --levels: mesh and starting values are those of the solution with small steps; "
+        "expected "
+        "--bdf, --steps, --projection");
+  }
+  Setting setting;
+  setting.degree = options.degree.value_or(2);
+  setting.orders = options.bdf ? std::vector<int>{*options.bdf} : range(1, 4);
+  setting.steps = options.steps.value_or(options.preset == "paper" ? range(3, 6) : range(4, 6));
+  for (const int k : setting.steps) {
+    if (k < 1 || k > reference_k - 2)
+      throw InputError(format("--steps: found %d, expected 1 to %d", k, reference_k - 2));
+  }
+  setting.projections = own.projections;
+  return setting;
+}
+
+/// The state at t = 0.1, from the exact normal and mean curvature at t = 0.
+State behind_the_layer(const SurfaceSpace& space, const Surface& surface, const Field& x,
+                       WillmoreFlow& flow) {
+  const WillmoreStart start = willmore_start_on(space, surface, x, WillmoreFlow::Variant::willmore, false);
+  State state;
+  integrate(flow, {2, 2e-4, 500, parse_start("substeps:16")}, start.state, {},
+            [&](int, const State& now) { state = now; });
+  return state;
+}
+
+/// Largest nodal L2 norm over the steps n >= q of the difference from the solution with small steps, for each
+/// field.
+void record_errors(WillmoreFlow& flow, const SurfaceSpace& space, const State& initial, const TimeGrid& grid,
+                   Row& row) {
+  const TimeGrid small{5, time_steps.tau(reference_k), time_steps.count(reference_k),
+                       parse_start("substeps:128")};
+  const int ratio = small.steps / grid.steps;
+  std::vector<State> reference;
+  integrate(flow, small, initial, {}, [&](int n, const State& state) {
+    if (n % ratio == 0) reference.push_back(state);
+  });
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  const auto exact = [&](double t) { return reference.at(std::lround(t / grid.tau)); };
+  integrate(flow, grid, initial, std::function<State(double)>(exact), [&](int n, const State& state) {
+    if (n < grid.order) return;
+    space.assemble(reference[n].x, M, A);
+    for (const auto& [name, field] : {std::pair("x", &State::x), {"u", &State::u}, {"w", &State::w}}) {
+      double& largest = row.errors[name]["nodal_L2"];
+      largest = std::max(largest, std::sqrt(M.energy(state.*field - reference[n].*field)));
+    }
+  });
+}
+
+Row run_cell(const Setting& setting, int bdf, const std::string& projection, Row row) {
+  // 1. The ellipsoid and the finite element space on it: 162 nodes (quadratic elements).
+  const Vec3 axes(2, 2, 1.6);
+  const Surface surface = ellipsoid(axes[0], axes[1], axes[2]);
+  Mesh sphere = icosphere(1, 1);
+  sphere.nodes *= axes.asDiagonal();
+  const Mesh mesh = initial_mesh(
+      {}, 0, [&] { return sphere; }, surface, setting.degree);
+  const SurfaceSpace space(mesh);
+  describe_mesh(mesh, row);
+
+  // 2. The flow and its state behind the initial layer.
+  WillmoreFlow::Variant variant;
+  variant.project = projection == "projected";
+  WillmoreFlow flow(space, variant);
+  const State initial = behind_the_layer(space, surface, mesh.nodes, flow);
+
+  // 3. The time steps, with small steps and with those of the row.
+  record_errors(flow, space, initial, {bdf, row.tau, row.steps, {}}, row);
+  return row;
+}
+
+std::vector<Cell> cells(const Setting& setting) {
+  std::vector<Cell> list;
+  for (const std::string& projection : setting.projections) {
+    for (const int bdf : setting.orders) {
+      for (const int k : setting.steps) {
+        list.push_back(
+            {format("%s_bdf%d_tau%d", projection.c_str(), bdf, k), 2,
+             [=](const Row& row, const std::string&) { return run_cell(setting, bdf, projection, row); },
+             planned_row(0, time_steps, k, {{"bdf", std::to_string(bdf)}, {"projection", projection}})});
+      }
+    }
+  }
+  return list;
+}
+
+nlohmann::json parameters(const Setting& setting, const std::string& preset) {
+  return {{"preset", preset},
+          {"end_time", time_steps.end_time},
+          {"degree", setting.degree},
+          {"surface", "ellipsoid with half axes 2, 2, 1.6"},
+          {"start", "solution with small steps"},
+          {"errors", "against BDF5 with 1,024 steps on the same mesh, behind the initial layer"}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  OwnOptions own;
+  Experiment experiment;
+  experiment.stem = "willmore_time_orders";
+  experiment.paper = "kll21";
+  experiment.help =
+      "Orders in time of BDF 1 to 4 for Willmore flow of an ellipsoid on [0, 0.4], with and without "
+      "projections of nu_h "
+      "and\n"
+      "z_h, against small steps on the same mesh. Step sizes 0.1 2^-k, k = 1..6. No units.\n\n"
+      "Example: willmore_time_orders --bdf 2 --steps 3-6 --output table.json";
+  experiment.add_options = [&](CLI::App& app) {
+    add_names_option(app, "--projection", known_projections,
+                     "none | projected: nu_h and z_h after each step; both unless given", own.projections);
+  };
+  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
+  experiment.parameters = [&](const Options& options) {
+    return parameters(resolve(options, own), options.preset);
+  };
+  return run_experiment(experiment, argc, argv);
+}
