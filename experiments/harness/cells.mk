@@ -37,7 +37,7 @@ results/$(PRESET)/$(1).json results/$(PRESET)/$(1).csv results/$(PRESET)/$(1).te
 	@$(BIN)/$(1) --preset $(PRESET) --collect $(cells)/$(1) --output results/$(PRESET)/$(1).json
 	echo "$(1): results/$(PRESET)/$(1).json"
 
-$(figures)/.$(1).drawn: results/$(PRESET)/$(1).json $(wildcard plots/*.py)
+$(figures)/.$(1).drawn: results/$(PRESET)/$(1).json $(filter-out plots/test%,$(wildcard plots/*.py))
 	@mkdir -p $(figures)
 	$$(PYTHON) plots/$(1).py results/$(PRESET)/$(1).json $(figures)
 	touch $$@
