@@ -174,12 +174,30 @@ void run_willmore(const Run& run) {
   run_flow(WillmoreFlow(run.space, config.willmore, start.theta), run, start.state, {});
 }
 
+void run_cahn_hilliard(const Run& run) {
+  const EvolveConfig& config = run.config;
+  const TimeGrid& grid = config.grid;
+  const ManufacturedCahnHilliard exact(EvolvingEllipsoid(), config.cahn_hilliard.epsilon);
+  MovingNodes nodes(exact.ellipsoid().velocity(), config.mesh.nodes, grid.tau / grid.start.substeps_per_step);
+  const NodalMotion motion = [&](double t) -> const Field& { return nodes.at(t); };
+  const ExactState<CahnHilliardState> exact_state = [&](double t) {
+    return exact_cahn_hilliard_state(run.space, exact, nodes.at(t), t, config.cahn_hilliard.initial);
+  };
+  const CahnHilliardState start = exact_state(0);
+  Field theta;
+  if (config.cahn_hilliard.theta)
+    theta = cahn_hilliard_theta(run.space, start.x, start.u, start.w, exact.epsilon(),
+                                load_of_g(run.space, DoubleWell(), 0, start.x, start.u));
+  run_flow(CahnHilliard(run.space, exact.problem(), motion, exact.epsilon(), theta), run, start, exact_state);
+}
+
 void run(const Run& run) {
   const std::string& flow = run.config.flow;
   if (flow == "mean_curvature") return run_mean_curvature(run);
   if (flow == "dziuk") return run_dziuk(run);
   if (flow == "bgn") return run_bgn(run);
   if (flow == "willmore" || flow == "surface_diffusion") return run_willmore(run);
+  if (flow == "cahn_hilliard") return run_cahn_hilliard(run);
   const bool is_sphere = run.config.coupled.problem == EvolveConfig::Coupled::growing_sphere;
   is_sphere ? run_growing_sphere(run) : run_tumour_growth(run);
 }

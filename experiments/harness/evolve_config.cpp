@@ -16,8 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-const std::set<std::string> known_flows = {"mean_curvature",    "dziuk",    "bgn",
-                                           "coupled_diffusion", "willmore", "surface_diffusion"};
+const std::set<std::string> known_flows = {
+    "mean_curvature", "dziuk", "bgn", "coupled_diffusion", "willmore", "surface_diffusion", "cahn_hilliard"};
 
 std::string listed(const std::set<std::string>& names) {
   std::string list;
@@ -181,6 +181,34 @@ void read_willmore_variant(const json& description, const std::string& where, Ev
     throw InputError(where + ": theta needs exact initial data; expected a \"surface\", or \"theta\": false");
 }
 
+void require_unit_sphere(const EvolveConfig& config, const std::string& what) {
+  if (config.surface && config.surface->name == "sphere" && config.surface->parameters.at("radius") == 1)
+    return;
+  throw InputError(
+      what + " starts from the unit sphere; expected \"surface\": {\"name\": \"sphere\", \"radius\": 1}");
+}
+
+/// The manufactured solution on an ellipsoid that starts as the unit sphere, bk22 §9.
+void read_cahn_hilliard(const JsonReader& reader, const std::string& source, EvolveConfig& config) {
+  require_unit_sphere(config, source + ": problem ellipsoid");
+  if (config.adaptive)
+    throw InputError(source + ": flow cahn_hilliard takes equal steps; expected tau and steps");
+  if (reader.has("problem")) choice<bool>(reader, "problem", {{"ellipsoid", true}}, true);
+  if (reader.has("parameters")) {
+    const JsonReader parameters(reader.object("parameters"), source + ": parameters");
+    parameters.accept_only({"epsilon"});
+    config.cahn_hilliard.epsilon = positive_or(parameters, "epsilon", config.cahn_hilliard.epsilon);
+  }
+  if (!reader.has("variant")) return;
+  const json& description = reader.object("variant");
+  const JsonReader variant(description, source + ": variant");
+  variant.accept_only({"theta", "initial"});
+  config.cahn_hilliard.theta = truth_or(variant, description, "theta", false);
+  config.cahn_hilliard.initial = choice<StartValues>(
+      variant, "initial", {{"interpolation", StartValues::interpolation}, {"ritz", StartValues::ritz}},
+      StartValues::interpolation);
+}
+
 /// "mass", "law" and, for the growing sphere, "coupling".
 void read_coupled_variant(const JsonReader& variant, EvolveConfig::Coupled& coupled) {
   using Variant = CoupledDiffusionVariant;
@@ -202,10 +230,7 @@ void read_coupled_variant(const JsonReader& variant, EvolveConfig::Coupled& coup
 
 void read_growing_sphere(const JsonReader& parameters, const EvolveConfig& config,
                          EvolveConfig::Coupled& coupled) {
-  if (!config.surface || config.surface->name != "sphere" || config.surface->parameters.at("radius") != 1)
-    throw InputError(parameters.where() +
-                     ": problem growing_sphere starts from the unit sphere; expected \"surface\": {\"name\": "
-                     "\"sphere\", \"radius\": 1}");
+  require_unit_sphere(config, parameters.where() + ": problem growing_sphere");
   parameters.accept_only({"alpha", "beta"});
   coupled.parameters.alpha = parameters.number_or("alpha", 1);
   coupled.parameters.beta = parameters.number_or("beta", 1);
@@ -295,6 +320,8 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
   if (config.flow == "coupled_diffusion") {
     config.coupled = coupled_problem(reader, config);
+  } else if (config.flow == "cahn_hilliard") {
+    read_cahn_hilliard(reader, source, config);
   } else {
     for (const char* key : {"problem", "parameters"}) {
       if (reader.has(key))
@@ -320,11 +347,14 @@ std::string evolve_config_help() {
          | "dziuk"                            Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5
          | "bgn"                              Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good
          | "coupled_diffusion"                nick18 (2.19)-(2.21): moved by what diffuses on the surface
-         | "willmore" | "surface_diffusion",  kll21 (3.4)-(3.5): V = Delta H + Q; surface diffusion: Q = 0
+         | "willmore" | "surface_diffusion"   kll21 (3.4)-(3.5): V = Delta H + Q; surface diffusion: Q = 0
+         | "cahn_hilliard",                   bk22 (8.3) on a surface that moves with a given velocity
    "problem": "growing_sphere"                coupled_diffusion: nick18 7.3, from the unit sphere (default)
+            | "ellipsoid"                     cahn_hilliard: exp(-6t) x1 x2 on an ellipsoid that starts as the unit sphere
             | "tumour_growth",                activator and substrate (Schnakenberg) on any surface, from a disturbed
                                               steady state
    "parameters": {"alpha": 1, "beta": 1}      growing_sphere
+               | {"epsilon": 0.5}             cahn_hilliard
                | {"alpha": 1, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30, "delta": 0.4,
                   "disturbance": 0.01, "seed": 1},                                             tumour_growth
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
@@ -346,7 +376,8 @@ std::string evolve_config_help() {
              "coupling": "additive" | "quotient" | "none"},   coupled_diffusion; coupling: growing_sphere
             {"F": "extrapolated" | "implicit", "project": true, "theta": true, "relaxation": 0},  willmore, surface_diffusion;
                                               theta: the correction (3.7), default false without "surface"; relaxation:
-                                              1/time, towards the geometry of the surface, times tau at most 0.8
+                                              1/time, towards the geometry of the surface, times tau at most 0.2
+            {"theta": false, "initial": "interpolation" | "ritz"},  cahn_hilliard
    "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
               "checkpoint": "run.checkpoint", the same command goes on from it when the run was stopped
@@ -355,7 +386,7 @@ std::string evolve_config_help() {
 Surfaces and their defaults:
 )" + named_surfaces_help() +
          R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u, or u1, u2;
-willmore, surface_diffusion: nu, H, V, z) of the last step, one row a node
+willmore, surface_diffusion: nu, H, V, z; cahn_hilliard: u, w) of the last step, one row a node
 in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
 (degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
 willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself. Snapshots have v, nu, H, and kappa = M^-1 A x. Where

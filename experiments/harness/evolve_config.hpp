@@ -7,6 +7,7 @@
 
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/fe/quadrature.hpp"
+#include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/flows/growing_sphere.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/tumour_growth.hpp"
@@ -18,7 +19,8 @@ namespace esfem {
 
 /// What a CONFIG.json of `evolve` asks for, with the defaults filled in.
 struct EvolveConfig {
-  std::string flow;  ///< mean_curvature | dziuk | bgn | coupled_diffusion | willmore | surface_diffusion
+  std::string flow;  ///< mean_curvature | dziuk | bgn | coupled_diffusion | willmore | surface_diffusion |
+                     ///< cahn_hilliard
   std::optional<Surface> surface;  ///< the exact initial surface, where one is given
   Mesh mesh;                       ///< P_k; on the surface, where there is one
   std::string mesh_remark;         ///< what the reader of the mesh changed; empty: nothing
@@ -29,6 +31,11 @@ struct EvolveConfig {
   MeanCurvatureFlow::Variant mean_curvature;
   WillmoreFlow::Variant willmore;
   bool willmore_theta = false;  ///< with the correction (3.7) of kll21
+  struct {
+    double epsilon = 0.5;
+    bool theta = false;  ///< with the correction (3.13) of bk22
+    StartValues initial = StartValues::interpolation;
+  } cahn_hilliard;
   struct Coupled {
     enum Problem { growing_sphere, tumour_growth } problem = growing_sphere;
     CoupledDiffusionParameters parameters;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "solver/assembly/lifted_points.hpp"
 #include "solver/fe/lagrange.hpp"
 
 namespace esfem {
@@ -17,45 +18,25 @@ SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, con
 SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
                            double t, const Field& w) {
   const int components = exact.components();
-  const Quadrature& rule = space.quadrature();
-  const ShapeTable shapes = shape_functions(space.degree(), rule.points);
+  const ShapeTable shapes = shape_functions(space.degree(), space.quadrature().points);
   const int nodes = static_cast<int>(shapes.value.cols());
-  const Surface surface = exact.surface(t);
-
-  // The nodes' position and components side by side, so that one product interpolates them all.
-  Eigen::MatrixXd local(nodes, 3 + components), value, dxi, deta;
+  Eigen::MatrixXd local(nodes, components), value, dxi, deta;
   Eigen::VectorXd exact_value(components);
   Eigen::MatrixXd exact_gradient(3, components), gradient(3, components);
   SquaredNorms norms{Eigen::VectorXd::Zero(components), Eigen::VectorXd::Zero(components)};
-  for (int element = 0; element < space.element_count(); ++element) {
-    for (int i = 0; i < nodes; ++i) {
-      const int j = space.elements()(element, i);
-      local.row(i) << x_star.row(j), w.row(j);
+  visit_lifted_points(space, x_star, exact.surface(t), [&](const LiftedPoint& point) {
+    if (point.q == 0) {
+      for (int i = 0; i < nodes; ++i) local.row(i) = w.row(space.elements()(point.element, i));
+      value.noalias() = shapes.value * local;
+      dxi.noalias() = shapes.dxi * local;
+      deta.noalias() = shapes.deta * local;
     }
-    value.noalias() = shapes.value * local;
-    dxi.noalias() = shapes.dxi * local;
-    deta.noalias() = shapes.deta * local;
-    for (int q = 0; q < rule.weights.size(); ++q) {
-      const Vec3 x = value.row(q).head<3>();
-      const Vec3 y = surface.closest_point(x);
-      const Surface::Shape shape = surface.shape_at(y);
-      const double s = shape.normal.dot(x - y);
-
-      Eigen::Matrix<double, 3, 2> tangents;
-      tangents << dxi.row(q).head<3>().transpose(), deta.row(q).head<3>().transpose();
-      tangents -= shape.normal * (shape.normal.transpose() * tangents);
-      tangents = (Mat3::Identity() + s * shape.weingarten).inverse() * tangents;
-      const Eigen::Matrix2d metric = tangents.transpose() * tangents;
-      const double dA = rule.weights[q] * std::sqrt(metric.determinant());
-
-      exact.fields(t, y, shape, exact_value, exact_gradient);
-      const Eigen::Matrix<double, 3, 2> dual = tangents * metric.inverse();
-      gradient.noalias() = dual.col(0) * dxi.row(q).tail(components);
-      gradient.noalias() += dual.col(1) * deta.row(q).tail(components);
-      norms.L2 += dA * (value.row(q).tail(components).transpose() - exact_value).cwiseAbs2();
-      norms.H1_semi += dA * (gradient - exact_gradient).colwise().squaredNorm().transpose();
-    }
-  }
+    exact.fields(t, point.y, point.shape, exact_value, exact_gradient);
+    gradient.noalias() = point.dual.col(0) * dxi.row(point.q);
+    gradient.noalias() += point.dual.col(1) * deta.row(point.q);
+    norms.L2 += point.dA * (value.row(point.q).transpose() - exact_value).cwiseAbs2();
+    norms.H1_semi += point.dA * (gradient - exact_gradient).colwise().squaredNorm().transpose();
+  });
   return norms;
 }
 

@@ -103,6 +103,27 @@ T level_set_mean_curvature(const LevelSet& d, const std::array<T, 3>& x) {
   return (laplacian - along_gradient / squared_slope) / sqrt(squared_slope);
 }
 
+/// Delta_Gamma f = Delta f - n . (Hess f) n - H n . grad f in the point x of the level set of d through it,
+/// for f given in space.
+template <class T, class LevelSet, class Function>
+T surface_laplacian(const LevelSet& d, const Function& f, const std::array<T, 3>& x) {
+  const auto slope = second_jet<T>(d, x);
+  const auto jet = second_jet<T>(f, x);
+  T squared_slope = slope.v[0].a * slope.v[0].a;
+  T laplacian = jet.v[0].v[0], along_slope = slope.v[0].a * jet.v[0].a;
+  for (int i = 1; i < 3; ++i) {
+    squared_slope = squared_slope + slope.v[i].a * slope.v[i].a;
+    laplacian = laplacian + jet.v[i].v[i];
+    along_slope = along_slope + slope.v[i].a * jet.v[i].a;
+  }
+  T twice_along_slope = ceres::FromDouble<T>::make(0.0);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      twice_along_slope = twice_along_slope + slope.v[i].a * jet.v[i].v[j] * slope.v[j].a;
+  return laplacian - twice_along_slope / squared_slope -
+         level_set_mean_curvature<T>(d, x) * along_slope / sqrt(squared_slope);
+}
+
 /// A surface from a functor with `template <class T> T operator()(const T& x1, const T& x2, const T& x3)
 /// const`: all derivatives come from Ceres Jets, so the formula of d (made of + - * / sqrt) is all that one
 /// writes.

@@ -168,6 +168,25 @@ TEST_F(Evolve, RunsFlowsOfFourthOrder) {
   EXPECT_LT(area[4].get<double>(), area[0].get<double>());
 }
 
+TEST_F(Evolve, SolvesCahnHilliardOnAMovingEllipsoid) {
+  json ellipsoid = config({{"flow", "cahn_hilliard"}, {"degree", 1}, {"start", "exact"}, {"tau", 0.005}});
+  ellipsoid["mesh"] = {{"subdivisions", 2}};
+  ASSERT_EQ(run(ellipsoid), exit_done) << message;
+  const json end = read_json(nodal);
+  const double t = end.at("t");
+  for (int j = 0; j < static_cast<int>(end.at("x").size()); ++j) {
+    const json& x = end.at("x")[j];
+    EXPECT_NEAR(end.at("u")[j].get<double>(), std::exp(-6 * t) * x[0].get<double>() * x[1].get<double>(),
+                0.02);
+  }
+  ellipsoid["variant"] = {{"theta", true}, {"initial", "ritz"}};
+  ASSERT_EQ(run(ellipsoid), exit_done) << message;
+  EXPECT_NE(read_json(nodal).at("w"), end.at("w"));
+  ellipsoid["surface"]["radius"] = 2;
+  EXPECT_EQ(run(ellipsoid), exit_usage);
+  EXPECT_THAT(message, HasSubstr("unit sphere"));
+}
+
 TEST_F(Evolve, ThetaNeedsASurface) {
   const std::string file = std::string(ESFEM_SOURCE_DIR) + "/reference/independent/ellipsoid_362.msh";
   json willmore =
@@ -254,6 +273,8 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"flow", "willmore"}, {"variant", {{"relaxation", -1}}}}, "relaxation = -1"},
       {{{"flow", "surface_diffusion"}, {"variant", {{"normalise", true}}}},
        "known are F, project, relaxation, theta"},
+      {{{"flow", "cahn_hilliard"}, {"parameters", {{"epsilon", 0}}}}, "epsilon = 0"},
+      {{{"flow", "cahn_hilliard"}, {"variant", {{"initial", "exact"}}}}, "interpolation, ritz"},
       {{{"output", {{"vtk", "a"}}}}, "known are checkpoint, every, nodal, series, times, vtu"},
   };
   for (const auto& [changes, expected] : bad) {

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/cahn_hilliard.hpp"
+
+#include <cmath>
+
+#include "solver/error.hpp"
+#include "solver/flows/regularity.hpp"
+#include "solver/linalg/sparse_cholesky.hpp"
+
+namespace esfem {
+
+CahnHilliardScheme::CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon,
+                                       Field theta)
+    : space_(space),
+      motion_(std::move(motion)),
+      epsilon_(epsilon),
+      theta_(std::move(theta)),
+      M_(space.matrix()),
+      A_(space.matrix()),
+      block_(space.pattern()) {
+  if (!(epsilon > 0) || !std::isfinite(epsilon))
+    throw InputError(format("epsilon: found %g, expected a positive number", epsilon));
+}
+
+void CahnHilliardScheme::prepare(const History<State>& history, int q, State& next) {
+  next.x = motion_(next.t);
+  assemble_regular(space_, next.x, M_, A_);
+  history.extrapolate(q, &State::u, u_tilde_);
+}
+
+void CahnHilliardScheme::advance(const History<State>& history, int q, double tau, const Field& loads,
+                                 const Field& b, State& next) {
+  // The block solver's second unknown is -w.
+  history.bdf_sum(q, &State::Mu, Mu_sum_);
+  next.u = loads.col(0) - Mu_sum_ / tau;
+  if (b.size() > 0) {
+    M_.multiply(b, Mb_);
+    next.u += Mb_;
+  }
+  next.w = loads.col(1) / -epsilon_;
+  if (theta_.size() > 0) next.w -= theta_;
+  block_.factorise(history.delta(q)[0] / tau, 1.0, epsilon_, M_, A_);
+  block_.solve(next.u, next.w);
+  next.w *= -1.0;
+  M_.multiply(next.u, next.Mu);
+}
+
+CahnHilliardState cahn_hilliard_state(const SurfaceSpace& space, double t, Field x, Field u, Field w) {
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(x, M, A);
+  CahnHilliardState state;
+  state.t = t;
+  state.Mu = M * u;
+  state.x = std::move(x);
+  state.u = std::move(u);
+  state.w = std::move(w);
+  return state;
+}
+
+Field cahn_hilliard_theta(const SurfaceSpace& space, const Field& x, const Field& u, const Field& w,
+                          double epsilon, const Field& load_of_g) {
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(x, M, A);
+  return M * w - epsilon * (A * u) - load_of_g / epsilon;
+}
+
+Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon,
+                      const Field& load_of_g) {
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(x, M, A);
+  Field w = epsilon * (A * u) + load_of_g / epsilon;
+  SparseCholesky cholesky(space.pattern());
+  cholesky.factorise(1.0, M, 0.0, A);
+  cholesky.solve(w);
+  return w;
+}
+
+double ginzburg_landau_energy(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon) {
+  const auto density = [epsilon](const PointData<1>& p, Integrand<1, 0>& load) {
+    const Pack well = p.u[0] * p.u[0] - 1.0;
+    load.value[0] = epsilon / 2 * dot(p.grad[0], p.grad[0]) + well * well / (4 * epsilon);
+  };
+  Field load;
+  space.assemble_load<1, 1, 0>(x, u, density, load);
+  return load.sum();  // the shape functions sum to 1
+}
+
+std::vector<PointField> point_fields(const CahnHilliardState& state) {
+  return {{"u", state.u}, {"w", state.w}};
+}
+
+}  // namespace esfem

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "solver/assembly/surface_space.hpp"
+#include "solver/linalg/block_solver.hpp"
+#include "solver/mesh/write_vtu.hpp"
+#include "solver/time/history.hpp"
+
+namespace esfem {
+
+struct CahnHilliardState {
+  double t = 0;
+  Field x;   ///< N x 3
+  Field u;   ///< N x 1
+  Field w;   ///< N x 1
+  Field Mu;  ///< N x 1: M(x) u, so that no old matrix is needed
+  static constexpr NamedField<CahnHilliardState> fields[] = {{"x", &CahnHilliardState::x},
+                                                             {"u", &CahnHilliardState::u},
+                                                             {"w", &CahnHilliardState::w},
+                                                             {"Mu", &CahnHilliardState::Mu}};
+};
+
+/// Positions of the nodes at a time.
+using NodalMotion = std::function<const Field&(double t)>;
+
+/// A step of bk22 (8.3) with its loads given: what does not depend on f, g and b. As printed (8.3) lacks tau
+/// before f, and the theta of (3.13); with epsilon it is
+///   delta_0 M(t_n) u + tau A(t_n) w = tau (f + M(t_n) b) - sum_{j>=1} delta_j M(t_{n-j}) u^{n-j},
+///   -epsilon A(t_n) u + M(t_n) w = g/epsilon + theta.
+class CahnHilliardScheme {
+ public:
+  using State = CahnHilliardState;
+
+  /// theta (N x 1), see cahn_hilliard_theta; none when it is empty. Throws InputError unless epsilon > 0.
+  CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon, Field theta);
+
+  /// next.x at next.t, M and A there, and the extrapolated u~. Throws SingularityError where elements are
+  /// degenerate.
+  void prepare(const History<State>& history, int q, State& next);
+  const Field& u_tilde() const { return u_tilde_; }
+
+  /// After prepare: solves for u and w. loads: N x 2, f(u~) and g(u~); b: nodal values at next.t, N x 1
+  /// (none: empty).
+  void advance(const History<State>& history, int q, double tau, const Field& loads, const Field& b,
+               State& next);
+
+ private:
+  const SurfaceSpace& space_;
+  NodalMotion motion_;
+  double epsilon_;
+  Field theta_;
+  SymmetricMatrix M_, A_;
+  BlockSolver block_;
+  Field u_tilde_, Mu_sum_, Mb_;
+};
+
+/// Cahn-Hilliard equation on a surface that moves with a given velocity, bk22 (9.1) with a general f:
+///   d•u + u div v - Lap w = f(u, grad u) + b,   w + epsilon Lap u = g(u, grad u)/epsilon,
+/// linear in each step: f and g are evaluated with u~.
+///
+/// A Problem says what f, g and b are:
+///   struct Problem {
+///     Pack f(double t, const PointData<1>& p) const;
+///     Pack g(double t, const PointData<1>& p) const;
+///     void b(double t, const Field& x, Field& nodal) const;   // N x 1, or empty: none
+///   };
+template <class Problem>
+class CahnHilliard {
+ public:
+  using State = CahnHilliardState;
+
+  /// The space gives elements, degree and quadrature; it must outlive the flow.
+  CahnHilliard(const SurfaceSpace& space, Problem problem, NodalMotion motion, double epsilon,
+               Field theta = {})
+      : space_(space),
+        problem_(std::move(problem)),
+        scheme_(space, std::move(motion), epsilon, std::move(theta)) {}
+
+  /// One step with BDF of order q: fills all fields of next. Throws SingularityError where elements have
+  /// degenerated.
+  void step(const History<State>& history, int q, double tau, State& next) {
+    scheme_.prepare(history, q, next);
+    const auto f_and_g = [&](const PointData<1>& p, Integrand<2, 0>& load) {
+      load.value[0] = problem_.f(next.t, p);
+      load.value[1] = problem_.g(next.t, p);
+    };
+    space_.assemble_load<1, 2, 0>(next.x, scheme_.u_tilde(), f_and_g, loads_);
+    problem_.b(next.t, next.x, b_);
+    scheme_.advance(history, q, tau, loads_, b_, next);
+  }
+
+ private:
+  const SurfaceSpace& space_;
+  Problem problem_;
+  CahnHilliardScheme scheme_;
+  Field loads_, b_;
+};
+
+/// The state with given nodal values, and Mu = M(x) u.
+CahnHilliardState cahn_hilliard_state(const SurfaceSpace& space, double t, Field x, Field u, Field w);
+
+/// The load of a Problem's g for given nodes and u, N x 1: what the starting values below need.
+template <class Problem>
+Field load_of_g(const SurfaceSpace& space, const Problem& problem, double t, const Field& x, const Field& u) {
+  const auto g = [&](const PointData<1>& p, Integrand<1, 0>& load) { load.value[0] = problem.g(t, p); };
+  Field load;
+  space.assemble_load<1, 1, 0>(x, u, g, load);
+  return load;
+}
+
+/// theta = M w - epsilon A u - g/epsilon: what the second equation lacks for given u and w at the start (bk22
+/// (3.13)).
+Field cahn_hilliard_theta(const SurfaceSpace& space, const Field& x, const Field& u, const Field& w,
+                          double epsilon, const Field& load_of_g);
+
+/// w from the second equation for given u, without theta.
+Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon,
+                      const Field& load_of_g);
+
+/// The double-well potential without f and b: g = F'(u) = u³ - u, F = (u² - 1)²/4.
+struct DoubleWell {
+  Pack f(double, const PointData<1>&) const { return Pack{}; }
+  Pack g(double, const PointData<1>& p) const { return p.u[0] * (p.u[0] * p.u[0] - 1.0); }
+  void b(double, const Field&, Field&) const {}
+};
+
+/// Ginzburg-Landau energy, integral of epsilon/2 |grad u|² + F(u)/epsilon over Gamma_h[x] (bk22 (2.3) with
+/// epsilon).
+double ginzburg_landau_energy(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon);
+
+/// The flow's own nodal fields beside x: u, w.
+std::vector<PointField> point_fields(const CahnHilliardState& state);
+
+}  // namespace esfem

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "solver/flows/cahn_hilliard.hpp"
+#include "solver/flows/prescribed_motion.hpp"
+#include "solver/surfaces/surface.hpp"
+
+namespace esfem {
+
+/// bk22 (9.2): {x1²/a(t) + x2² + x3² = radius²}, a(t) = 1 + amplitude sin(2 pi t/period), which moves by v =
+/// V nu.
+struct EvolvingEllipsoid {
+  double amplitude = 0.25, period = 1, radius = 1;
+
+  double a(double t) const;
+  double a_t(double t) const;
+  Surface surface(double t) const;
+  Velocity velocity() const;
+};
+
+/// bk22 §9: u = exp(-6t) x1 x2 on this ellipsoid, w from the second equation and b from the first one of
+/// (9.1), with f = 0 and g of the double-well potential.
+class ManufacturedCahnHilliard {
+ public:
+  ManufacturedCahnHilliard(EvolvingEllipsoid ellipsoid, double epsilon)
+      : ellipsoid_(ellipsoid), epsilon_(epsilon) {}
+
+  /// In a point of the surface at time t.
+  double u(const Vec3& x, double t) const;
+  double w(const Vec3& x, double t) const;
+  double b(const Vec3& x, double t) const;
+  /// Tangential gradients.
+  Vec3 gradient_of_u(const Vec3& x, double t) const;
+  Vec3 gradient_of_w(const Vec3& x, double t) const;
+
+  /// The Problem of CahnHilliard: b is interpolated in the nodes.
+  struct Problem : DoubleWell {
+    const ManufacturedCahnHilliard* exact;
+    void b(double t, const Field& x, Field& nodal) const;
+  };
+  const EvolvingEllipsoid& ellipsoid() const { return ellipsoid_; }
+  double epsilon() const { return epsilon_; }
+  Problem problem() const {
+    Problem problem;
+    problem.exact = this;
+    return problem;
+  }
+
+ private:
+  EvolvingEllipsoid ellipsoid_;
+  double epsilon_;
+};
+
+/// The starting values of bk22 §9: nodal interpolation of u and w, or their Ritz maps (5.4).
+enum class StartValues { interpolation, ritz };
+CahnHilliardState exact_cahn_hilliard_state(const SurfaceSpace& space, const ManufacturedCahnHilliard& exact,
+                                            Field x, double t, StartValues values);
+
+}  // namespace esfem
