@@ -238,7 +238,7 @@ TEST_F(Evolve, WritesSnapshotsAtTheTimesAskedFor) {
 
 TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
   const std::vector<std::pair<json, std::string>> bad = {
-      {{{"flow", "mean"}}, "expected one of bgn, coupled_diffusion, dziuk, mean_curvature"},
+      {{{"flow", "mean"}}, "expected one of bgn, cahn_hilliard, coupled_diffusion, dziuk, mean_curvature"},
       {{{"flow", "bgn"}, {"bdf", 2}}, "bdf = 2; expected 1 to 1"},
       {{{"flow", "dziuk"}, {"variant", {{"normalise", true}}}}, "no variants"},
       {{{"problem", "growing_sphere"}}, "expected no key problem"},
