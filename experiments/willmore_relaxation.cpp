@@ -65,8 +65,8 @@ Mesh graded(const Surface& surface, double scale) {
   return generate_mesh(surface, radial_edge_length(0.3, 0.0577 * scale, 1.7, 0.2307 * scale));
 }
 
-std::vector<Case> known_cases() {
-  return {
+const std::vector<Case>& known_cases() {
+  static const std::vector<Case> list = {
       {"ellipsoid", ellipsoid(2, 1, 1), uniform(0.1949), Case::sphere, 0.008},
       {"red_blood_cell", red_blood_cell(), uniform(0.1794), Case::sphere, 0.008},
       {"perturbed_torus", perturbed_torus(2, 1.2, 0.1, 3), uniform(0.26265), Case::clifford_torus, 0.008},
@@ -76,6 +76,7 @@ std::vector<Case> known_cases() {
       // Its velocity is 2e4 at first.
       {"small_torus_4", perturbed_torus(1, 0.6, 0.1, 4), graded, Case::clifford_torus, 0.002, 1e-9},
   };
+  return list;
 }
 
 std::vector<std::string> names(const std::vector<Case>& cases) {
@@ -86,7 +87,7 @@ std::vector<std::string> names(const std::vector<Case>& cases) {
 
 const std::vector<std::string> known_settings = {"paper", "implicit", "adaptive", "relaxed"};
 
-/// One run. A level -j has half as many triangles j times.
+/// One run. Each level has half as many triangles as the one before.
 struct Run {
   Case start;
   std::string setting;
@@ -133,8 +134,7 @@ Setting resolve(const Options& options, const OwnOptions& own) {
   if (!options.meshes.empty() || options.steps || options.bdf || options.start) {
     throw InputError(
         "--mesh, --steps, --bdf, --start: surfaces and step sizes are those of the settings; expected "
-        "--surfaces, "
-        "--settings, --levels (evolve takes any mesh and step size)");
+        "--surfaces, --settings, --levels (evolve takes any mesh and step size)");
   }
   Setting setting;
   setting.degree = options.degree.value_or(2);
@@ -198,7 +198,7 @@ double value_at(const Series& series, const std::string& name, double t) {
   return series.at(name)[std::min<std::size_t>(found - times.begin(), times.size() - 1)];
 }
 
-/// The numbers that claims are about.
+/// The numbers that claims are about. The largest rise of the energy is that between recorded steps.
 void describe_end(const Run& run, Row& row) {
   const Series& series = row.series;
   const double limit = run.start.limit == Case::sphere ? 8 * pi : 4 * pi * pi;
@@ -315,11 +315,9 @@ int main(int argc, char** argv) {
   experiment.paper = "kll21";
   experiment.help =
       "Willmore flow of an ellipsoid, a red blood cell and a perturbed torus to t = 4 (kll21 Figure 7.5): "
-      "energies, "
-      "radii and\n"
+      "energies, radii and\n"
       "snapshots, as the paper runs it, with adaptive steps, and with relaxation towards the geometry. Level "
-      "0: the "
-      "published\n"
+      "0: the published\n"
       "numbers of nodes, each further level half of them. No units.\n\n"
       "Example: willmore_relaxation --surfaces small_ellipsoid --settings relaxed --levels 0-2 --output "
       "table.json";
