@@ -10,6 +10,7 @@
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/mesh/generate.hpp"
 #include "tests/assembly/meshes.hpp"
+#include "tests/flows/bgn_schemes.hpp"
 #include "tests/flows/reference_case.hpp"
 
 namespace esfem {
@@ -28,19 +29,7 @@ double largest(const Field& field) {
   return field.cwiseAbs().maxCoeff();
 }
 
-/// The scheme of the paper (P1 with the rule of the vertices), and P1 and P2 with consistent mass matrices.
-struct Scheme {
-  const char* name;
-  int degree;
-  Quadrature rule;
-};
-std::ostream& operator<<(std::ostream& out, const Scheme& scheme) {
-  return out << scheme.name;
-}
-const Scheme lumped = {"LumpedP1", 1, vertex_quadrature()}, consistent = {"P1", 1, default_quadrature(1)},
-             quadratic = {"P2", 2, default_quadrature(2)};
-
-class BgnSchemes : public testing::TestWithParam<Scheme> {
+class BgnSchemes : public testing::TestWithParam<BgnScheme> {
  protected:
   const Mesh mesh = ellipsoid_mesh({2, 1.5, 1.2}, GetParam().degree, GetParam().degree == 1 ? 2 : 1);
   const SurfaceSpace space{mesh, GetParam().rule};
@@ -169,11 +158,11 @@ TEST(BgnFlow, SphereShrinksWithFirstOrderInTime) {
 TEST(BgnFlow, QuadraticElementsAreBetterInSpace) {
   const double tau = 0.05, tolerance = 0.2;
   const int steps = 8;
-  const auto error = [&](const Scheme& scheme, int subdivisions) {
+  const auto error = [&](const BgnScheme& scheme, int subdivisions) {
     return radius_error(run(sphere_mesh(2, scheme.degree, subdivisions), scheme.rule, tau, steps),
                         radius_of_the_scheme(tau, steps));
   };
-  for (const Scheme& scheme : {lumped, consistent}) {
+  for (const BgnScheme& scheme : {lumped, consistent}) {
     EXPECT_GE(order(error(scheme, 2), error(scheme, 3)), 2 - tolerance) << scheme;
   }
   EXPECT_GE(order(error(quadratic, 1), error(quadratic, 2)), 4 - tolerance);

@@ -9,6 +9,7 @@
 #include "solver/flows/discrete_curvature.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "tests/assembly/meshes.hpp"
+#include "tests/flows/bgn_schemes.hpp"
 #include "tests/flows/reference_case.hpp"
 
 namespace esfem {
@@ -71,19 +72,7 @@ TEST(WeakWeingarten, ConvergesToTheWeingartenMap) {
   EXPECT_GT(weingarten_error(3, false), 2) << "it needs the term with H";
 }
 
-/// The scheme of the paper (P1 with the rule of the vertices), and P1 and P2 with consistent mass matrices.
-struct Scheme {
-  const char* name;
-  int degree;
-  Quadrature rule;
-};
-std::ostream& operator<<(std::ostream& out, const Scheme& scheme) {
-  return out << scheme.name;
-}
-const Scheme lumped = {"LumpedP1", 1, vertex_quadrature()}, consistent = {"P1", 1, default_quadrature(1)},
-             quadratic = {"P2", 2, default_quadrature(2)};
-
-class BgnWillmoreSchemes : public testing::TestWithParam<Scheme> {
+class BgnWillmoreSchemes : public testing::TestWithParam<BgnScheme> {
  protected:
   const Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, GetParam().degree, GetParam().degree == 1 ? 2 : 1);
   const SurfaceSpace space{mesh, GetParam().rule};
@@ -215,7 +204,7 @@ TEST(BgnWillmoreFlow, OnlyTheFirstOrderIsThere) {
 }
 
 TEST(BgnWillmoreFlow, SphereStaysUpToTheErrorInSpace) {
-  const auto error = [](const Scheme& scheme, int subdivisions) {
+  const auto error = [](const BgnScheme& scheme, int subdivisions) {
     return radius_error(run(sphere_mesh(1, scheme.degree, subdivisions), scheme.rule, 0.01, 10).x);
   };
   EXPECT_LT(error(lumped, 2), 4e-3);
