@@ -10,11 +10,12 @@
 namespace esfem {
 
 CahnHilliardScheme::CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon,
-                                       Field theta)
+                                       Field theta, Velocity tangential)
     : space_(space),
       motion_(std::move(motion)),
       epsilon_(epsilon),
       theta_(std::move(theta)),
+      tangential_(std::move(tangential)),
       M_(space.matrix()),
       A_(space.matrix()),
       block_(space.pattern()) {
@@ -28,6 +29,18 @@ void CahnHilliardScheme::prepare(const History<State>& history, int q, State& ne
   history.extrapolate(q, &State::u, u_tilde_);
 }
 
+void CahnHilliardScheme::add_advection(const State& at, Field& load_of_u) {
+  tangential_(at.t, at.x, W_);
+  u_and_W_.resize(at.x.rows(), 4);
+  u_and_W_ << u_tilde_, W_;
+  const auto minus_u_W = [](const PointData<4>& p, Integrand<1, 1>& load) {
+    load.value[0] = Pack{};
+    for (int l = 0; l < 3; ++l) load.flux[0][l] = -p.u[0] * p.u[1 + l];
+  };
+  space_.assemble_load<4, 1, 1>(at.x, u_and_W_, minus_u_W, advection_);
+  load_of_u += advection_;
+}
+
 void CahnHilliardScheme::advance(const History<State>& history, int q, double tau, const Field& loads,
                                  const Field& b, State& next) {
   // The block solver's second unknown is -w.
@@ -37,6 +50,7 @@ void CahnHilliardScheme::advance(const History<State>& history, int q, double ta
     M_.multiply(b, Mb_);
     next.u += Mb_;
   }
+  if (tangential_) add_advection(next, next.u);
   next.w = loads.col(1) / -epsilon_;
   if (theta_.size() > 0) next.w -= theta_;
   block_.factorise(history.delta(q)[0] / tau, 1.0, epsilon_, M_, A_);

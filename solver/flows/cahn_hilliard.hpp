@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/prescribed_motion.hpp"
 #include "solver/linalg/block_solver.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
@@ -31,12 +32,18 @@ using NodalMotion = std::function<const Field&(double t)>;
 /// before f, and the theta of (3.13); with epsilon it is
 ///   delta_0 M(t_n) u + tau A(t_n) w = tau (f + M(t_n) b) - sum_{j>=1} delta_j M(t_{n-j}) u^{n-j},
 ///   -epsilon A(t_n) u + M(t_n) w = g/epsilon + theta.
+///
+/// Nodes may move with another velocity than the material, v + W with a tangential W (bk22 §1: ALE). Then
+/// d•u + u div v = d°u + u div(v + W) - div(u W), where d° is the derivative along the nodes, and f gets the
+/// load - int u~ W . grad phi_j.
 class CahnHilliardScheme {
  public:
   using State = CahnHilliardState;
 
-  /// theta (N x 1), see cahn_hilliard_theta; none when it is empty. Throws InputError unless epsilon > 0.
-  CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon, Field theta);
+  /// theta (N x 1), see cahn_hilliard_theta; none when it is empty. tangential: W in the nodes; none: they
+  /// are material points. Throws InputError unless epsilon > 0.
+  CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon, Field theta,
+                     Velocity tangential);
 
   /// next.x at next.t, M and A there, and the extrapolated u~. Throws SingularityError where elements are
   /// degenerate.
@@ -49,13 +56,16 @@ class CahnHilliardScheme {
                State& next);
 
  private:
+  void add_advection(const State& at, Field& load_of_u);
+
   const SurfaceSpace& space_;
   NodalMotion motion_;
   double epsilon_;
   Field theta_;
+  Velocity tangential_;
   SymmetricMatrix M_, A_;
   BlockSolver block_;
-  Field u_tilde_, Mu_sum_, Mb_;
+  Field u_tilde_, Mu_sum_, Mb_, W_, u_and_W_, advection_;
 };
 
 /// Cahn-Hilliard equation on a surface that moves with a given velocity, bk22 (9.1) with a general f:
@@ -75,10 +85,10 @@ class CahnHilliard {
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
   CahnHilliard(const SurfaceSpace& space, Problem problem, NodalMotion motion, double epsilon,
-               Field theta = {})
+               Field theta = {}, Velocity tangential = {})
       : space_(space),
         problem_(std::move(problem)),
-        scheme_(space, std::move(motion), epsilon, std::move(theta)) {}
+        scheme_(space, std::move(motion), epsilon, std::move(theta), std::move(tangential)) {}
 
   /// One step with BDF of order q: fills all fields of next. Throws SingularityError where elements have
   /// degenerated.

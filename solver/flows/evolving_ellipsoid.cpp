@@ -30,14 +30,24 @@ struct Concentration {
 };
 
 /// w = -epsilon Delta_Gamma u + (u³ - u)/epsilon as a function of space: on each level set its own Laplacian.
+///
+/// With g = grad d/2, D = Hess d/2 = diag(1/a, 1, 1), s = |g|², nu = g/sqrt(s) and u = c x1 x2:
+///   H = tr D/sqrt(s) - g . D g/s^(3/2),   nu . grad u = (1 + 1/a) u/sqrt(s),   nu . (Hess u) nu = 2u/(a s),
+/// so Delta_Gamma u = Delta u - nu . (Hess u) nu - H nu . grad u
+///                  = -u (2/(a s) + (1 + 1/a) (tr D/s - g . D g/s²)).
 struct Potential {
   LevelSet d;
   Concentration u;
   double epsilon;
   template <class T>
   T operator()(const T& x1, const T& x2, const T& x3) const {
+    const double inverse = 1 / d.a;
+    const T along = x1 * x1 * (inverse * inverse), across = x2 * x2 + x3 * x3;
+    const T one_over_s = 1.0 / (along + across);
+    const T g_D_g = along * inverse + across;
+    const T bending = one_over_s * (2 * inverse + (1 + inverse) * (2 + inverse - g_D_g * one_over_s));
     const T value = u(x1, x2, x3);
-    return value * (value * value - 1.0) / epsilon - epsilon * surface_laplacian<T>(d, u, {x1, x2, x3});
+    return value * ((value * value - 1.0) / epsilon + epsilon * bending);
   }
 };
 
@@ -67,11 +77,19 @@ Surface EvolvingEllipsoid::surface(double t) const {
 }
 
 Velocity EvolvingEllipsoid::velocity() const {
-  return normal_velocity([*this](const Vec3& x, double t, double& d_t, Vec3& gradient) {
-    const double now = a(t);
-    d_t = -a_t(t) / (now * now) * x[0] * x[0];
-    gradient = 2 * Vec3(x[0] / now, x[1], x[2]);
-  });
+  return [*this](double t, const Field& x, Field& v) {
+    const double now = a(t), half_of_minus_d_t = a_t(t) / (2 * now * now);
+    v = x;
+    v.col(0) /= now;
+    v.array().colwise() *= half_of_minus_d_t * x.col(0).array().square() / v.rowwise().squaredNorm().array();
+  };
+}
+
+Velocity EvolvingEllipsoid::stretching_velocity() const {
+  return [*this](double t, const Field& x, Field& v) {
+    v = Field::Zero(x.rows(), 3);
+    v.col(0) = a_t(t) / (2 * a(t)) * x.col(0);
+  };
 }
 
 double ManufacturedCahnHilliard::u(const Vec3& x, double t) const {
@@ -88,10 +106,11 @@ double ManufacturedCahnHilliard::b(const Vec3& x, double t) const {
   const LevelSet d{ellipsoid_.a(t), ellipsoid_.radius};
   const Concentration u_now = concentration(t);
   const Potential w_now{d, u_now, epsilon_};
-  const Vec3 v = ellipsoid_.velocity()(x, t), normal = level_set_jet(d, x).gradient.normalized();
+  const Vec3 slope = level_set_jet(d, x).gradient, normal = slope.normalized();
+  const double d_t = -ellipsoid_.a_t(t) * x[0] * x[0] / (d.a * d.a), V = -d_t / slope.norm();
   const std::array<double, 3> at = {x[0], x[1], x[2]};
-  const double material_derivative = -6 * u(x, t) + v.dot(level_set_jet(u_now, x).gradient);
-  return material_derivative + u(x, t) * v.dot(normal) * level_set_mean_curvature<double>(d, at) -
+  const double material_derivative = -6 * u(x, t) + V * normal.dot(level_set_jet(u_now, x).gradient);
+  return material_derivative + u(x, t) * V * level_set_mean_curvature<double>(d, at) -
          surface_laplacian<double>(d, w_now, at);
 }
 
@@ -107,6 +126,20 @@ Vec3 ManufacturedCahnHilliard::gradient_of_w(const Vec3& x, double t) const {
 void ManufacturedCahnHilliard::Problem::b(double t, const Field& x, Field& nodal) const {
   nodal.resize(x.rows(), 1);
   for (int j = 0; j < x.rows(); ++j) nodal(j, 0) = exact->b(x.row(j), t);
+}
+
+ExactEvolution exact_evolution(const ManufacturedCahnHilliard& exact, MovingNodes& nodes) {
+  ExactEvolution evolution;
+  evolution.quantities = {{"u", 1}, {"w", 1}};
+  evolution.surface = [&exact](double t) { return exact.ellipsoid().surface(t); };
+  evolution.trajectories = [&nodes](const Field&, double t) { return nodes.at(t); };
+  evolution.fields = [&exact](double t, const Vec3& y, const Surface::Shape&, Eigen::VectorXd& value,
+                              Eigen::MatrixXd& gradient) {
+    value << exact.u(y, t), exact.w(y, t);
+    gradient.col(0) = exact.gradient_of_u(y, t);
+    gradient.col(1) = exact.gradient_of_w(y, t);
+  };
+  return evolution;
 }
 
 CahnHilliardState exact_cahn_hilliard_state(const SurfaceSpace& space, const ManufacturedCahnHilliard& exact,

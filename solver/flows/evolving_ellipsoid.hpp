@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/flows/cahn_hilliard.hpp"
+#include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/prescribed_motion.hpp"
 #include "solver/surfaces/surface.hpp"
 
@@ -15,11 +16,16 @@ struct EvolvingEllipsoid {
   double a(double t) const;
   double a_t(double t) const;
   Surface surface(double t) const;
+  /// v = V nu, by which the material points move.
   Velocity velocity() const;
+  /// The velocity (a'/(2a) x1, 0, 0), which moves the same surface: nodes that start on the sphere stay its
+  /// image under a linear map.
+  Velocity stretching_velocity() const;
 };
 
 /// bk22 §9: u = exp(-6t) x1 x2 on this ellipsoid, w from the second equation and b from the first one of
-/// (9.1), with f = 0 and g of the double-well potential.
+/// (9.1), with f = 0 and g of the double-well potential. Lap u is in closed form, what follows by automatic
+/// differentiation.
 class ManufacturedCahnHilliard {
  public:
   ManufacturedCahnHilliard(EvolvingEllipsoid ellipsoid, double epsilon)
@@ -50,6 +56,9 @@ class ManufacturedCahnHilliard {
   EvolvingEllipsoid ellipsoid_;
   double epsilon_;
 };
+
+/// Its quantities u and w on nodes that move from their initial positions. Both must outlive it.
+ExactEvolution exact_evolution(const ManufacturedCahnHilliard& exact, MovingNodes& nodes);
 
 /// The starting values of bk22 §9: nodal interpolation of u and w, or their Ritz maps (5.4).
 enum class StartValues { interpolation, ritz };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/prescribed_motion.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/error.hpp"
@@ -8,33 +9,40 @@
 namespace esfem {
 
 Velocity normal_velocity(std::function<void(const Vec3&, double, double&, Vec3&)> level_set) {
-  return [level_set = std::move(level_set)](const Vec3& x, double t) -> Vec3 {
+  return [level_set = std::move(level_set)](double t, const Field& x, Field& v) {
+    v.resize(x.rows(), 3);
     double d_t = 0;
     Vec3 gradient;
-    level_set(x, t, d_t, gradient);
-    return -d_t / gradient.squaredNorm() * gradient;
+    for (int j = 0; j < x.rows(); ++j) {
+      level_set(x.row(j), t, d_t, gradient);
+      v.row(j) = -d_t / gradient.squaredNorm() * gradient;
+    }
   };
 }
 
-MovingNodes::MovingNodes(Velocity velocity, Field x0, double tau)
-    : velocity_(std::move(velocity)), x0_(std::move(x0)), tau_(tau), past_{x0_} {
+MovingNodes::MovingNodes(Velocity velocity, Field x0, double tau, int kept)
+    : velocity_(std::move(velocity)), x0_(std::move(x0)), tau_(tau), kept_(kept), past_{x0_} {
   if (!(tau > 0))
     throw InputError(format("motion of the nodes: found step size %g, expected a positive one", tau));
 }
 
 void MovingNodes::advance() {
   const double t = newest_ * tau_, half = tau_ / 2;
-  Field next = past_.front();
-  for (int j = 0; j < next.rows(); ++j) {
-    const Vec3 x = next.row(j);
-    const Vec3 k1 = velocity_(x, t);
-    const Vec3 k2 = velocity_(x + half * k1, t + half);
-    const Vec3 k3 = velocity_(x + half * k2, t + half);
-    const Vec3 k4 = velocity_(x + tau_ * k3, t + tau_);
-    next.row(j) = x + tau_ / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  const Field& x = past_.front();
+  velocity_(t, x, k_[0]);
+  stage_ = x + half * k_[0];
+  velocity_(t + half, stage_, k_[1]);
+  stage_ = x + half * k_[1];
+  velocity_(t + half, stage_, k_[2]);
+  stage_ = x + tau_ * k_[2];
+  velocity_(t + tau_, stage_, k_[3]);
+  stage_ = x + tau_ / 6 * (k_[0] + 2 * k_[1] + 2 * k_[2] + k_[3]);
+  if (kept_ != all && static_cast<int>(past_.size()) == kept_) {
+    std::rotate(past_.begin(), past_.end() - 1, past_.end());
+    past_.front().swap(stage_);
+  } else {
+    past_.push_front(stage_);
   }
-  past_.push_front(std::move(next));
-  if (past_.size() > kept) past_.pop_back();
   ++newest_;
 }
 

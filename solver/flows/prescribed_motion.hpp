@@ -8,8 +8,8 @@
 
 namespace esfem {
 
-/// A velocity in space, by which nodes are moved.
-using Velocity = std::function<Vec3(const Vec3& x, double t)>;
+/// Velocities v at time t in the points x of a surface (N x 3 each; v comes with any size).
+using Velocity = std::function<void(double t, const Field& x, Field& v)>;
 
 /// v = V nu of the level set {d(x, t) = 0}, V = -d_t/|grad d| (bk22 §9): the velocity -d_t grad d/|grad d|².
 /// The functor d returns the time derivative and the gradient in space in its last arguments.
@@ -19,21 +19,26 @@ Velocity normal_velocity(std::function<void(const Vec3& x, double t, double& d_t
 /// method of order 4 each (bk22 §9).
 class MovingNodes {
  public:
-  MovingNodes(Velocity velocity, Field x0, double tau);
+  /// How many of the newest positions are kept: all of them serve all runs on one mesh.
+  static constexpr int newest_few = 8, all = -1;
 
-  /// The positions at a time, which must be a multiple of tau (InputError). Times of the newest few steps are
-  /// kept; earlier ones are computed anew from the start.
+  /// Throws InputError unless tau is positive.
+  MovingNodes(Velocity velocity, Field x0, double tau, int kept = newest_few);
+
+  /// The positions at a time, which must be a multiple of tau (InputError). Those that are not kept are
+  /// computed anew from the start.
   const Field& at(double t);
 
  private:
   void advance();
 
-  static constexpr int kept = 8;
   Velocity velocity_;
   Field x0_;
   double tau_;
+  int kept_;
   int newest_ = 0;          ///< step of the newest positions
   std::deque<Field> past_;  ///< newest first
+  Field stage_, k_[4];      ///< work space
 };
 
 }  // namespace esfem

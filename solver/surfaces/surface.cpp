@@ -74,10 +74,20 @@ Vec3 descent_step(const Surface& surface, const Vec3& x, const Vec3& y) {
   return step.norm() > longest ? Vec3(step * (longest / step.norm())) : step;
 }
 
+NumericsError no_closest_point(const Surface& surface, const Vec3& x) {
+  return NumericsError(
+      format("no closest point of the %s found for (%.17g, %.17g, %.17g): is it near the surface?",
+             surface.name.c_str(), x[0], x[1], x[2]));
+}
+
 }  // namespace
 
 Vec3 Surface::closest_point(const Vec3& x) const {
-  if (closed_form_closest_point) return closed_form_closest_point(x);
+  if (own_closest_point) {
+    const Vec3 y = own_closest_point(x);
+    if (y.allFinite()) return y;
+    throw no_closest_point(*this, x);
+  }
   Vec3 y = onto_surface(*this, x);
   double previous = INFINITY;
   for (int iteration = 0; iteration < 100; ++iteration) {
@@ -96,9 +106,7 @@ Vec3 Surface::closest_point(const Vec3& x) const {
     if (length <= 1e-15 * bounding_radius || (tiny && length >= 0.5 * previous)) return y;
     previous = length;
   }
-  throw NumericsError(
-      format("no closest point of the %s found for (%.17g, %.17g, %.17g): is it near the surface?",
-             name.c_str(), x[0], x[1], x[2]));
+  throw no_closest_point(*this, x);
 }
 
 Surface sphere(double radius) {
@@ -106,8 +114,28 @@ Surface sphere(double radius) {
     return (x1 * x1 + x2 * x2 + x3 * x3 - radius * radius) / (2.0 * radius);
   };
   Surface surface = make_surface("sphere", d, radius, radius, 2, {{"radius", radius}});
-  surface.closed_form_closest_point = [radius](const Vec3& x) -> Vec3 { return x * (radius / x.norm()); };
+  surface.own_closest_point = [radius](const Vec3& x) -> Vec3 { return x * (radius / x.norm()); };
   return surface;
+}
+
+/// The closest point of the ellipsoid is y_i = a_i² x_i/(a_i² + s) with sum y_i²/a_i² = 1, which falls and is
+/// convex for s > -min a_i²: from the left of its root Newton's method is monotone. r = s + min a_i².
+Vec3 closest_point_of_ellipsoid(const Vec3& axes, const Vec3& x) {
+  const Vec3 squares = axes.cwiseAbs2();
+  const double smallest = squares.minCoeff();
+  // There one term alone is 1, so this is at the root or left of it.
+  const double left = (axes.cwiseProduct(x.cwiseAbs()) - squares).maxCoeff() + smallest;
+  double r = std::max(smallest, left);
+  for (int iteration = 0; iteration < 100; ++iteration) {
+    const Vec3 inverse = (squares.array() - smallest + r).inverse();
+    const Vec3 y = axes.cwiseProduct(x).cwiseProduct(inverse);  // y_i/a_i
+    const double excess = y.squaredNorm() - 1, slope = -2 * y.cwiseAbs2().dot(inverse);
+    const double next = std::max(left, r - excess / slope);
+    const bool done = std::abs(next - r) <= 1e-9 * r;  // then next is exact: order 2
+    r = next;
+    if (done) return squares.cwiseProduct(x).cwiseQuotient(Vec3(squares.array() - smallest + r));
+  }
+  return Vec3::Constant(NAN);
 }
 
 Surface ellipsoid(double a, double b, double c) {
@@ -116,8 +144,12 @@ Surface ellipsoid(double a, double b, double c) {
   };
   const double longest = std::max({a, b, c}), shortest = std::min({a, b, c});
   // At the end of the longest axis the curvature of the section with the shortest axis is longest/shortest².
-  return make_surface("ellipsoid", d, longest, shortest * shortest / longest, 2,
-                      {{"a", a}, {"b", b}, {"c", c}});
+  Surface surface =
+      make_surface("ellipsoid", d, longest, shortest * shortest / longest, 2, {{"a", a}, {"b", b}, {"c", c}});
+  surface.own_closest_point = [axes = Vec3(a, b, c)](const Vec3& x) {
+    return closest_point_of_ellipsoid(axes, x);
+  };
+  return surface;
 }
 
 Surface torus(double major, double minor) {
@@ -129,7 +161,7 @@ Surface torus(double major, double minor) {
   };
   Surface surface = make_surface("torus", d, major + minor, std::min(minor, major - minor), 0,
                                  {{"major", major}, {"minor", minor}});
-  surface.closed_form_closest_point = [=](const Vec3& x) -> Vec3 {
+  surface.own_closest_point = [=](const Vec3& x) -> Vec3 {
     const Vec3 centre = Vec3(x[0], x[1], 0).normalized() * major;
     return centre + (x - centre).normalized() * minor;
   };

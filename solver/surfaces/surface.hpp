@@ -29,8 +29,9 @@ struct Surface {
   double bounding_radius;                    ///< the surface lies inside this ball around the origin
   double smallest_curvature_radius;          ///< min over the surface of 1/max(|kappa_1|, |kappa_2|)
   int euler_characteristic;
-  /// Closed form of the closest point, where there is one; otherwise Newton's method finds it.
-  std::function<Vec3(const Vec3&)> closed_form_closest_point = {};
+  /// This surface's own way to the closest point, where there is one (a closed form); otherwise Newton's
+  /// method in space finds it.
+  std::function<Vec3(const Vec3&)> own_closest_point = {};
   /// The mean curvature div(grad d/|grad d|) of the level set through y as a function of space.
   std::function<LevelSetJet(const Vec3&)> mean_curvature_jet = {};
 

@@ -357,6 +357,19 @@ TEST(Surface, NormalsAreTangentiallyConsistentWithTheWeingartenMap) {
   }
 }
 
+TEST(Surface, ClosestPointsOfAnEllipsoidAreThoseOfNewtonsMethodInSpace) {
+  const Surface surface = ellipsoid(2, 1, 0.7);
+  Surface general = surface;
+  general.own_closest_point = {};
+  for (const Vec3& y : random_points(surface, 200)) {
+    for (double s : {-0.3, 0.0, 0.2, 5.0}) {
+      const Vec3 x = y + s * surface.smallest_curvature_radius * surface.normal(y);
+      EXPECT_LT((surface.closest_point(x) - general.closest_point(x)).norm(), 2e-12) << x.transpose();
+    }
+  }
+  EXPECT_THROW(surface.closest_point(Vec3::Zero()), NumericsError);
+}
+
 TEST(Surface, FarPointsOfAnEllipsoidAreAnErrorOrOnIt) {
   const Surface surface = ellipsoid(1, 1, 0.6);
   try {
