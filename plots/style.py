@@ -78,7 +78,8 @@ def limit_line(axes, limit, label="", zorder=1.5):
     axes.axhline(limit, color="black", linewidth=0.8, linestyle=(0, (4, 2.5)), zorder=zorder, gid=f"limit {label}")
     above = high - limit > limit - low
     axes.annotate(label, (1, limit), (-8, 2.5 if above else -3), xycoords=("axes fraction", "data"),
-                  textcoords="offset points", ha="right", va="bottom" if above else "top", fontsize=8.5)
+                  textcoords="offset points", ha="right", va="bottom" if above else "top", fontsize=8.5, zorder=5,
+                  bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6})
 
 
 def notice(paragraphs):
