@@ -3,7 +3,8 @@
 // ratio to a naive step. One row per mesh, N = 2.5k, 10k, 41k, 164k; milliseconds of CPU time of all threads,
 // medians. Then a whole step of the flow, loads included, on the dumbbell of kll19 §13.2 with 10.5k nodes, as
 // a ratio to the two factorisations and solves in it; and a step of Willmore flow (kll21) with about 10k and
-// 12k nodes, as a ratio to its factorisation and solves and to a naive one.
+// 12k nodes, as a ratio to its factorisation and solves and to a naive one. At last a step of Cahn-Hilliard
+// (bk22 §9.2) on P1 with 10,242 nodes, motion and loads included, as a ratio to a naive one.
 //
 //   bench_step                                   all sizes; the naive step up to N = 41k
 //   bench_step --benchmark_filter=nodes:163842   peak memory of one size alone (column peak_MiB)
@@ -21,6 +22,7 @@
 #include "bench/naive_step.hpp"
 #include "experiments/harness/library_environment.hpp"
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/flows/willmore_terms.hpp"
@@ -245,6 +247,54 @@ void willmore_step(benchmark::State& state, double edge_length) {
   state.counters["naive_over_step"] = phases["naive"] / phases["step"];
 }
 
+/// Steps of BDF2 of the energy runs of bk22 §9.2.
+void cahn_hilliard_step(benchmark::State& state) {
+  const double step_size = 1e-4, epsilon = 0.1;
+  Mesh mesh = icosphere(1, 5);
+  const SurfaceSpace space(mesh);
+  MovingNodes nodes(EvolvingEllipsoid{0.25, 0.2, 1}.velocity(), mesh.nodes, step_size);
+  CahnHilliard flow(
+      space, DoubleWell(), [&](double t) -> const Field& { return nodes.at(t); }, epsilon);
+  History<CahnHilliardState> history(2);
+  const Field u0 = 0.1 * (2 * std::acos(-1.0) * mesh.nodes).array().cos().rowwise().prod();
+  CahnHilliardState next = cahn_hilliard_state(space, 0, mesh.nodes, u0, u0);
+  history.push(next);
+  int n = 1;
+  const auto take_step = [&](int order) {
+    next.t = n * step_size;
+    flow.step(history, order, step_size, next);
+  };
+
+  Phases phases;
+  take_step(1);
+  for (auto _ : state) {
+    history.push(next);
+    ++n;
+    const double begin = cpu_ms();
+    phases.start();
+    take_step(2);
+    phases.end("step");
+    state.SetIterationTime((cpu_ms() - begin) / 1e3);
+  }
+  Field u_tilde, old;
+  history.extrapolate(2, &CahnHilliardState::u, u_tilde);
+  history.bdf_sum(2, &CahnHilliardState::Mu, old);
+  old /= -step_size;
+  mesh.nodes = next.x;
+  for (int repetition = 0; repetition < 3; ++repetition) {
+    phases.start();
+    const Field naive =
+        naive_cahn_hilliard_step(mesh, space.quadrature(), u_tilde, old, epsilon, 1.5 / step_size);
+    phases.end("naive");
+    if ((naive.col(0) - next.u).norm() > 1e-6 * next.u.norm() ||
+        (naive.col(1) - next.w).norm() > 1e-6 * next.w.norm())
+      throw std::runtime_error("the naive Cahn-Hilliard step gives another solution");
+  }
+  state.counters["nodes"] = space.dofs();
+  for (const char* phase : {"step", "naive"}) state.counters[phase] = phases[phase];
+  state.counters["naive_over_step"] = phases["naive"] / phases["step"];
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -274,5 +324,9 @@ int main(int argc, char** argv) {
         ->UseManualTime()
         ->Iterations(20);
   }
+  benchmark::RegisterBenchmark("flow_step/cahn_hilliard", cahn_hilliard_step)
+      ->Unit(benchmark::kMillisecond)
+      ->UseManualTime()
+      ->Iterations(20);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -107,8 +107,17 @@ void willmore_loads(const Point& at, Load& load) {
   load.value.tail<3>() = A.squaredNorm() * nu;
 }
 
-/// [alpha M, -A; A, M] as one sparse matrix.
-Sparse block_matrix(const System& system, double alpha) {
+/// (u³ - u)/epsilon of the double well.
+struct DoubleWellLoad {
+  double epsilon;
+  void operator()(const Point& at, Load& load) const {
+    const double u = at.u[0];
+    load.value[0] = (u * u * u - u) / epsilon;
+  }
+};
+
+/// [alpha M, -A; gamma A, M] as one sparse matrix.
+Sparse block_matrix(const System& system, double alpha, double gamma) {
   const int n = static_cast<int>(system.M.rows());
   std::vector<Eigen::Triplet<double>> entries;
   for (int j = 0; j < n; ++j) {
@@ -116,7 +125,7 @@ Sparse block_matrix(const System& system, double alpha) {
       const int i = static_cast<int>(M.row());
       entries.emplace_back(i, j, alpha * M.value());
       entries.emplace_back(i, n + j, -A.value());
-      entries.emplace_back(n + i, j, A.value());
+      entries.emplace_back(n + i, j, gamma * A.value());
       entries.emplace_back(n + i, n + j, M.value());
     }
   }
@@ -143,11 +152,25 @@ Field naive_willmore_step(const Mesh& mesh, const Quadrature& rule, const Field&
   const Eigen::Index n = mesh.nodes.rows();
   Field right(2 * n, 4);
   right << system.load.leftCols(4), system.load.rightCols(4);
-  const Sparse block = block_matrix(system, mass_factor);  // the solver keeps a reference
+  const Sparse block = block_matrix(system, mass_factor, 1);  // the solver keeps a reference
   const Eigen::UmfPackLU<Sparse> solver(block);
   const Field solution = solver.solve(right);
   Field out(n, 8);
   out << solution.topRows(n), solution.bottomRows(n);
+  return out;
+}
+
+Field naive_cahn_hilliard_step(const Mesh& mesh, const Quadrature& rule, const Field& u_tilde,
+                               const Field& old, double epsilon, double mass_factor) {
+  const System system = assemble(mesh, rule, u_tilde, 1, DoubleWellLoad{epsilon});
+  const Eigen::Index n = mesh.nodes.rows();
+  Field right(2 * n, 1);
+  right << old, -system.load;  // the second unknown is -w
+  const Sparse block = block_matrix(system, mass_factor, epsilon);
+  const Eigen::UmfPackLU<Sparse> solver(block);
+  const Field solution = solver.solve(right);
+  Field out(n, 2);
+  out << solution.topRows(n), -solution.bottomRows(n);
   return out;
 }
 

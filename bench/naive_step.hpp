@@ -16,4 +16,9 @@ Field naive_step(const Mesh& mesh, const Quadrature& rule, const Field& u, doubl
 /// the columns of the result.
 Field naive_willmore_step(const Mesh& mesh, const Quadrature& rule, const Field& u_w, double mass_factor);
 
+/// One step of bk22 (8.3) with the double well in the same way: u~ (N x 1), old = -sum_{j>=1} delta_j M
+/// u^{n-j}/tau. Returns u and w, N x 2.
+Field naive_cahn_hilliard_step(const Mesh& mesh, const Quadrature& rule, const Field& u_tilde,
+                               const Field& old, double epsilon, double mass_factor);
+
 }  // namespace esfem

@@ -93,6 +93,17 @@ struct Run {
   Checkpoint* checkpoint;
 };
 
+/// What the series of a flow have beside those of its surface.
+template <class State>
+void record_more(const Run&, const State&) {}
+
+void record_more(const Run& run, const CahnHilliardState& state) {
+  Series& series = run.recorder.series();
+  series["mass"].push_back(state.Mu.sum());
+  series["energy"].push_back(
+      ginzburg_landau_energy(run.space, state.x, state.u, run.config.cahn_hilliard.epsilon));
+}
+
 /// Integrates from `initial` and records every step. exact: the exact solution, where one is known.
 template <class Flow, class State = typename Flow::State>
 void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactState<State>& exact) {
@@ -103,6 +114,7 @@ void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactStat
   const bool terminal = isatty(STDERR_FILENO);
   const auto observe = [&](int n, const State& state) {
     run.recorder.record(n, state.t, state.x, point_fields(state));
+    record_more(run, state);
     if (terminal)
       std::fprintf(stderr, "\rstep %d, t = %g of %g%s", n, state.t, end, state.t >= end ? "\n" : "");
   };
@@ -174,7 +186,7 @@ void run_willmore(const Run& run) {
   run_flow(WillmoreFlow(run.space, config.willmore, start.theta), run, start.state, {});
 }
 
-void run_cahn_hilliard(const Run& run) {
+void run_manufactured_cahn_hilliard(const Run& run) {
   const EvolveConfig& config = run.config;
   const TimeGrid& grid = config.grid;
   const ManufacturedCahnHilliard exact(EvolvingEllipsoid(), config.cahn_hilliard.epsilon);
@@ -189,6 +201,19 @@ void run_cahn_hilliard(const Run& run) {
     theta = cahn_hilliard_theta(run.space, start.x, start.u, start.w, exact.epsilon(),
                                 load_of_g(run.space, DoubleWell(), 0, start.x, start.u));
   run_flow(CahnHilliard(run.space, exact.problem(), motion, exact.epsilon(), theta), run, start, exact_state);
+}
+
+void run_phase_separation(const Run& run) {
+  const auto& [problem, epsilon, theta, initial, mean, disturbance, seed] = run.config.cahn_hilliard;
+  const Field& x = run.config.mesh.nodes;
+  const NodalMotion at_rest = [&](double) -> const Field& { return x; };
+  run_flow(CahnHilliard(run.space, DoubleWell(), at_rest, epsilon), run,
+           disturbed_mixture(run.space, x, epsilon, mean, disturbance, seed), {});
+}
+
+void run_cahn_hilliard(const Run& run) {
+  const auto& asked = run.config.cahn_hilliard;
+  asked.problem == asked.ellipsoid ? run_manufactured_cahn_hilliard(run) : run_phase_separation(run);
 }
 
 void run(const Run& run) {

@@ -188,23 +188,37 @@ void require_unit_sphere(const EvolveConfig& config, const std::string& what) {
       what + " starts from the unit sphere; expected \"surface\": {\"name\": \"sphere\", \"radius\": 1}");
 }
 
-/// The manufactured solution on an ellipsoid that starts as the unit sphere, bk22 §9.
+/// The manufactured solution on an ellipsoid that starts as the unit sphere, bk22 §9, or the separation of a
+/// disturbed mixture on a surface at rest.
 void read_cahn_hilliard(const JsonReader& reader, const std::string& source, EvolveConfig& config) {
-  require_unit_sphere(config, source + ": problem ellipsoid");
-  if (config.adaptive)
-    throw InputError(source + ": flow cahn_hilliard takes equal steps; expected tau and steps");
-  if (reader.has("problem")) choice<bool>(reader, "problem", {{"ellipsoid", true}}, true);
+  auto& run = config.cahn_hilliard;
+  using Run = std::decay_t<decltype(run)>;
+  run.problem =
+      choice(reader, "problem", {{"ellipsoid", Run::ellipsoid}, {"phase_separation", Run::phase_separation}},
+             run.problem);
+  const bool on_ellipsoid = run.problem == Run::ellipsoid;
+  if (on_ellipsoid) {
+    require_unit_sphere(config, source + ": problem ellipsoid");
+    if (config.adaptive)
+      throw InputError(source + ": problem ellipsoid takes equal steps; expected tau and steps");
+  }
   if (reader.has("parameters")) {
     const JsonReader parameters(reader.object("parameters"), source + ": parameters");
-    parameters.accept_only({"epsilon"});
-    config.cahn_hilliard.epsilon = positive_or(parameters, "epsilon", config.cahn_hilliard.epsilon);
+    parameters.accept_only(on_ellipsoid ? std::set<std::string>{"epsilon"}
+                                        : std::set<std::string>{"epsilon", "mean", "disturbance", "seed"});
+    run.epsilon = positive_or(parameters, "epsilon", run.epsilon);
+    run.mean = parameters.number_or("mean", run.mean);
+    run.disturbance = parameters.number_or("disturbance", run.disturbance);
+    run.seed = integer_within(parameters, "seed", run.seed, 0, 1000000);
   }
   if (!reader.has("variant")) return;
+  if (!on_ellipsoid)
+    throw InputError(source + ": problem phase_separation has no variants; expected no key variant");
   const json& description = reader.object("variant");
   const JsonReader variant(description, source + ": variant");
   variant.accept_only({"theta", "initial"});
-  config.cahn_hilliard.theta = truth_or(variant, description, "theta", false);
-  config.cahn_hilliard.initial = choice<StartValues>(
+  run.theta = truth_or(variant, description, "theta", false);
+  run.initial = choice<StartValues>(
       variant, "initial", {{"interpolation", StartValues::interpolation}, {"ritz", StartValues::ritz}},
       StartValues::interpolation);
 }
@@ -351,10 +365,13 @@ std::string evolve_config_help() {
          | "cahn_hilliard",                   bk22 (8.3) on a surface that moves with a given velocity
    "problem": "growing_sphere"                coupled_diffusion: nick18 7.3, from the unit sphere (default)
             | "ellipsoid"                     cahn_hilliard: exp(-6t) x1 x2 on an ellipsoid that starts as the unit sphere
+                                              (default)
+            | "phase_separation"              cahn_hilliard: a disturbed mixture on any surface, at rest
             | "tumour_growth",                activator and substrate (Schnakenberg) on any surface, from a disturbed
                                               steady state
    "parameters": {"alpha": 1, "beta": 1}      growing_sphere
-               | {"epsilon": 0.5}             cahn_hilliard
+               | {"epsilon": 0.5}             ellipsoid
+               | {"epsilon": 0.5, "mean": 0, "disturbance": 0.1, "seed": 1},                   phase_separation
                | {"alpha": 1, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30, "delta": 0.4,
                   "disturbance": 0.01, "seed": 1},                                             tumour_growth
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
@@ -367,7 +384,7 @@ std::string evolve_config_help() {
    "steps": 0,                                end time = steps tau; 0 writes the initial surface
    "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
                 "tolerance": 1e-3,            follow the solution; of u (mean_curvature, coupled_diffusion, willmore,
-                "first_step": 1e-6,           surface_diffusion) or x, root mean square
+                "first_step": 1e-6,           surface_diffusion, phase_separation) or x, root mean square
                 "largest_step": 0.01},        default: no bound
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
@@ -377,7 +394,7 @@ std::string evolve_config_help() {
             {"F": "extrapolated" | "implicit", "project": true, "theta": true, "relaxation": 0},  willmore, surface_diffusion;
                                               theta: the correction (3.7), default false without "surface"; relaxation:
                                               1/time, towards the geometry of the surface, times tau at most 0.2
-            {"theta": false, "initial": "interpolation" | "ritz"},  cahn_hilliard
+            {"theta": false, "initial": "interpolation" | "ritz"},  ellipsoid
    "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
               "checkpoint": "run.checkpoint", the same command goes on from it when the run was stopped
@@ -389,7 +406,8 @@ Surfaces and their defaults:
 willmore, surface_diffusion: nu, H, V, z; cahn_hilliard: u, w) of the last step, one row a node
 in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
 (degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
-willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself. Snapshots have v, nu, H, and kappa = M^-1 A x. Where
+willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and
+energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x. Where
 the flow has no nu, max_H and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
 A run that meets a singularity writes what it has computed, says so, and ends with exit code 2.)";
 }

@@ -32,9 +32,12 @@ struct EvolveConfig {
   WillmoreFlow::Variant willmore;
   bool willmore_theta = false;  ///< with the correction (3.7) of kll21
   struct {
+    enum Problem { ellipsoid, phase_separation } problem = ellipsoid;
     double epsilon = 0.5;
-    bool theta = false;  ///< with the correction (3.13) of bk22
-    StartValues initial = StartValues::interpolation;
+    bool theta = false;                                ///< ellipsoid: with the correction (3.13) of bk22
+    StartValues initial = StartValues::interpolation;  ///< ellipsoid
+    double mean = 0, disturbance = 0.1;                ///< phase_separation
+    int seed = 1;
   } cahn_hilliard;
   struct Coupled {
     enum Problem { growing_sphere, tumour_growth } problem = growing_sphere;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/error.hpp"
+#include "solver/flows/plane_waves.hpp"
 #include "solver/flows/regularity.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
 
@@ -87,6 +88,14 @@ Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u,
   cholesky.factorise(1.0, M, 0.0, A);
   cholesky.solve(w);
   return w;
+}
+
+CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,
+                                    double disturbance, unsigned seed) {
+  std::mt19937 engine(seed);
+  const Field u = mean + disturbance * plane_waves(x, engine).array();
+  const Field w = cahn_hilliard_w(space, x, u, epsilon, load_of_g(space, DoubleWell(), 0, x, u));
+  return cahn_hilliard_state(space, 0, x, u, w);
 }
 
 double ginzburg_landau_energy(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon) {

@@ -138,6 +138,11 @@ struct DoubleWell {
   void b(double, const Field&, Field&) const {}
 };
 
+/// A disturbed mixture on nodes x, u = mean + disturbance times plane waves, and w from the second equation;
+/// t = 0.
+CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,
+                                    double disturbance, unsigned seed);
+
 /// Ginzburg-Landau energy, integral of epsilon/2 |grad u|² + F(u)/epsilon over Gamma_h[x] (bk22 (2.3) with
 /// epsilon).
 double ginzburg_landau_energy(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/tumour_growth.hpp"
 
-#include <cmath>
-#include <random>
-
 #include "solver/error.hpp"
+#include "solver/flows/plane_waves.hpp"
 
 namespace esfem {
 
@@ -33,21 +31,10 @@ CoupledDiffusionParameters tumour_growth_parameters() {
 CoupledDiffusionState tumour_growth_state(const SurfaceSpace& space, const Field& x,
                                           const TumourGrowth::Kinetics& kinetics, double disturbance,
                                           unsigned seed) {
-  const int waves = 20;
-  const double largest_wave_number = 4, pi = std::acos(-1.0);
-  // The distributions of <random> differ from library to library, its engines do not.
   std::mt19937 engine(seed);
-  const auto between_minus_one_and_one = [&] { return 2.0 * engine() / std::mt19937::max() - 1; };
   const Eigen::RowVector2d steady = TumourGrowth::steady_state(kinetics);
   Field u = steady.replicate(x.rows(), 1);
-  for (int l = 0; l < 2; ++l) {
-    for (int m = 0; m < waves; ++m) {
-      Vec3 wave;
-      for (int i = 0; i < 3; ++i) wave[i] = largest_wave_number * between_minus_one_and_one();
-      const double phase = pi * between_minus_one_and_one();
-      u.col(l).array() += disturbance * steady[l] / waves * ((x * wave).array() + phase).cos();
-    }
-  }
+  for (int l = 0; l < 2; ++l) u.col(l) += disturbance * steady[l] * plane_waves(x, engine);
   return coupled_diffusion_state(space, 0, x, Field::Zero(x.rows(), 3), u);
 }
 

@@ -40,9 +40,7 @@ class TumourGrowth {
 /// alpha = 1, beta = epsilon = 0.01, diffusion 1 and 10.
 CoupledDiffusionParameters tumour_growth_parameters();
 
-/// The steady state on nodes x, disturbed by up to `disturbance` of itself, and v = 0; t = 0. The disturbance
-/// is a mean of plane waves whose vectors and phases are pseudo-random: a function of space alone, the same
-/// for every mesh and machine.
+/// The steady state on nodes x, disturbed by plane waves of up to `disturbance` of itself, and v = 0; t = 0.
 CoupledDiffusionState tumour_growth_state(const SurfaceSpace& space, const Field& x,
                                           const TumourGrowth::Kinetics& kinetics, double disturbance = 0.01,
                                           unsigned seed = 1);

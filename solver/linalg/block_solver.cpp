@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solver/error.hpp"
+#include "solver/linalg/metis_ordering.hpp"
 #include "solver/linalg/thread_limit.hpp"
 
 namespace esfem {
@@ -30,6 +31,7 @@ ZMUMPS_COMPLEX* as_mumps(Complex* values) {
 struct BlockSolver::Mumps {
   std::shared_ptr<const SparsityPattern> pattern;
   std::vector<int> row, column;  ///< of the entries, counted from 1
+  std::vector<int> rank;         ///< of the nodes in the elimination, counted from 1
   Eigen::VectorXcd matrix;
   Eigen::MatrixXcd y;
   double alpha = 0, kappa = 0;
@@ -57,18 +59,23 @@ BlockSolver::Mumps::Mumps(std::shared_ptr<const SparsityPattern> shared) : patte
     }
   }
   matrix.setZero(pattern->entry_count());
+  rank.resize(pattern->size);
+  const std::vector<int> ordering = metis_ordering(*pattern);
+  for (int k = 0; k < pattern->size; ++k) rank[ordering[k]] = k + 1;
   instance.sym = general_symmetric;
   instance.par = 1;
   instance.comm_fortran = sequential_communicator;
   call(initialise);
   for (const int stream : {1, 2, 3}) control(stream) = -1;
-  control(4) = 0;        // prints nothing
-  control(6) = 0;        // no permutation by values: the analysis sees the pattern alone
-  control(7) = 5;        // METIS
+  control(4) = 0;  // prints nothing
+  control(6) = 0;  // no permutation by values: the analysis sees the pattern alone
+  // The order is given: MUMPS's own choice, SCOTCH, differs from process to process (and is not faster).
+  control(7) = 1;
   control(8) = 0;        // no scaling
   control(12) = 1;       // no 2 x 2 pivots in the ordering
   control(14) = 30;      // percent of spare memory
   instance.cntl[0] = 0;  // no pivoting: see the class
+  instance.perm_in = rank.data();
   instance.n = pattern->size;
   instance.nnz = pattern->entry_count();
   instance.irn = row.data();

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/linalg/sparse_cholesky.hpp"
 
-#include <cholmod.h>
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "solver/error.hpp"
+#include "solver/linalg/cholmod_pattern.hpp"
 #include "solver/linalg/thread_limit.hpp"
 
 namespace esfem {
@@ -52,16 +51,7 @@ SparseCholesky::Cholmod::~Cholmod() {
 }
 
 void SparseCholesky::Cholmod::analyse() {
-  cholmod_sparse lower = {};
-  lower.nrow = lower.ncol = pattern->size;
-  lower.nzmax = pattern->row.size();
-  lower.p = const_cast<int*>(pattern->column_start.data());
-  lower.i = const_cast<int*>(pattern->row.data());
-  lower.stype = -1;
-  lower.itype = CHOLMOD_INT;
-  lower.xtype = CHOLMOD_PATTERN;
-  lower.dtype = CHOLMOD_DOUBLE;
-  lower.sorted = lower.packed = true;
+  cholmod_sparse lower = cholmod_pattern(*pattern);
   factor = cholmod_analyze(&lower, &common);
   if (!factor)
     throw NumericsError(format("symbolic Cholesky analysis of %d unknowns failed (CHOLMOD status %d)",

@@ -187,6 +187,26 @@ TEST_F(Evolve, SolvesCahnHilliardOnAMovingEllipsoid) {
   EXPECT_THAT(message, HasSubstr("unit sphere"));
 }
 
+TEST_F(Evolve, SeparatesPhasesOnAnySurfaceAtRest) {
+  json separation = config({{"flow", "cahn_hilliard"},
+                            {"problem", "phase_separation"},
+                            {"parameters", {{"epsilon", 0.2}, {"mean", 0.1}}},
+                            {"tau", nullptr},
+                            {"steps", nullptr},
+                            {"bdf", 2},
+                            {"adaptive", {{"end_time", 3}, {"first_step", 1e-3}, {"tolerance", 1e-3}}}});
+  separation["surface"] = {{"name", "ellipsoid"}};
+  separation["mesh"] = {{"subdivisions", 2}};
+  ASSERT_EQ(run(separation), exit_done) << message;
+  const json found = read_json(series);
+  const std::vector<double> energy = found.at("energy"), mass = found.at("mass"), area = found.at("area");
+  EXPECT_EQ(energy.size(), area.size());
+  EXPECT_TRUE(std::is_sorted(energy.rbegin(), energy.rend()));
+  EXPECT_LT(energy.back(), 0.5 * energy.front());
+  EXPECT_NEAR(mass.back(), mass.front(), 1e-11);
+  EXPECT_NEAR(mass.back() / area.back(), 0.1, 0.05);
+}
+
 TEST_F(Evolve, ThetaNeedsASurface) {
   const std::string file = std::string(ESFEM_SOURCE_DIR) + "/reference/independent/ellipsoid_362.msh";
   json willmore =
@@ -275,6 +295,10 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
        "known are F, project, relaxation, theta"},
       {{{"flow", "cahn_hilliard"}, {"parameters", {{"epsilon", 0}}}}, "epsilon = 0"},
       {{{"flow", "cahn_hilliard"}, {"variant", {{"initial", "exact"}}}}, "interpolation, ritz"},
+      {{{"flow", "cahn_hilliard"}, {"problem", "sphere"}}, "ellipsoid, phase_separation"},
+      {{{"flow", "cahn_hilliard"}, {"problem", "phase_separation"}, {"variant", {{"theta", true}}}},
+       "has no variants"},
+      {{{"flow", "cahn_hilliard"}, {"parameters", {{"mean", 0.1}}}}, "known are epsilon"},
       {{{"output", {{"vtk", "a"}}}}, "known are checkpoint, every, nodal, series, times, vtu"},
   };
   for (const auto& [changes, expected] : bad) {

@@ -11,6 +11,7 @@
 #include "solver/assembly/surface_space.hpp"
 #include "solver/error.hpp"
 #include "solver/linalg/block_solver.hpp"
+#include "solver/linalg/metis_ordering.hpp"
 #include "tests/assembly/meshes.hpp"
 
 namespace esfem {
@@ -121,6 +122,15 @@ TEST(BlockSolver, TheSameNumbersGiveTheSameBits) {
   }
   EXPECT_EQ(u[0], u[1]);
   EXPECT_EQ(w[0], w[1]);
+}
+
+TEST(MetisOrdering, IsTheSamePermutationEachTime) {
+  const Blocks of(3);
+  const std::vector<int> ordering = metis_ordering(*of.space.pattern());
+  EXPECT_EQ(metis_ordering(*of.space.pattern()), ordering);
+  std::vector<int> sorted = ordering;
+  std::sort(sorted.begin(), sorted.end());
+  for (int i = 0; i < of.space.dofs(); ++i) ASSERT_EQ(sorted[i], i);
 }
 
 TEST(BlockSolver, SaysWhatIsWrong) {
