@@ -49,6 +49,9 @@ const double epsilon = 0.5;
 const double largest_h = 0.84;  ///< 40, 160, 636, 2491, 9994 vertices on the levels 0 to 4
 const HalvedSteps time_steps{1, 0.2};
 const int smallest_step = 7;  ///< the i of the smallest published tau
+/// When the runs of the kind "order" begin: the discrete solution has forgotten by then that its initial
+/// values are only close to a smooth one.
+const double orders_begin = 0.4;
 
 /// The kinds of runs, as --runs names them and as rows are labelled.
 const std::vector<std::string> known_runs = {"ritz_theta", "interpolation", "order"};
@@ -69,7 +72,7 @@ struct Setting {
   Start start;
   std::vector<std::string> meshes;
   std::string quadrature;
-  int motion_step;  ///< the nodes' step size is time_steps.tau of this
+  int smallest;  ///< the i of the smallest tau, with which the nodes move
 };
 
 /// Appends all combinations.
@@ -109,6 +112,15 @@ std::vector<Run> preset_runs(const std::string& preset) {
   return runs;
 }
 
+/// Throws InputError when a run of the kind "order" does not find all its starting values before its begin.
+void require_starting_values(const Run& run) {
+  if (run.kind == "order" && run.bdf * time_steps.tau(run.i) > orders_begin * (1 + 1e-9))
+    throw InputError(
+        format("--steps: found %d, expected more for --runs order: BDF%d needs %d steps of "
+               "0.2 2^-i before t = %g",
+               run.i, run.bdf, run.bdf, orders_begin));
+}
+
 Setting resolve(const Options& options, const OwnOptions& own) {
   Setting setting;
   setting.start = options.start.value_or(Start{});
@@ -130,8 +142,11 @@ Setting resolve(const Options& options, const OwnOptions& own) {
           .add_to(setting.runs);
     }
   }
-  setting.motion_step = smallest_step;
-  for (const Run& run : setting.runs) setting.motion_step = std::max(setting.motion_step, run.i);
+  setting.smallest = smallest_step;
+  for (const Run& run : setting.runs) {
+    setting.smallest = std::max(setting.smallest, run.i);
+    require_starting_values(run);
+  }
   return setting;
 }
 
@@ -142,11 +157,16 @@ struct MovingMesh {
   ManufacturedCahnHilliard exact{EvolvingEllipsoid{}, epsilon};
   Mesh mesh;
   SurfaceSpace space;
-  double tau;  ///< of the nodes' motion
-  MovingNodes nodes{exact.ellipsoid().velocity(), mesh.nodes, tau, MovingNodes::all};
+  double smallest_tau;
+  MovingNodes nodes;
 
-  MovingMesh(Mesh initial, const Quadrature& rule, double nodes_tau)
-      : mesh(std::move(initial)), space(mesh, rule), tau(nodes_tau) {}
+  /// substeps: how many of them the starting steps take. The positions at all of them are too many to keep.
+  MovingMesh(Mesh initial, const Quadrature& rule, double tau, int substeps)
+      : mesh(std::move(initial)),
+        space(mesh, rule),
+        smallest_tau(tau),
+        nodes(exact.ellipsoid().velocity(), mesh.nodes, tau / substeps,
+              substeps > 1 ? MovingNodes::newest_few : MovingNodes::all) {}
 };
 
 /// Made by the first run that needs it.
@@ -157,8 +177,8 @@ MovingMesh& moving_mesh(const Setting& setting, const Run& run, std::optional<Mo
     const Surface surface = sphere(1);
     const auto generate = [&] { return generate_mesh(surface, edge_length(largest_h, 2 * run.level)); };
     shared.emplace(initial_mesh(setting.meshes, run.level, generate, surface, run.degree),
-                   quadrature_or_default(setting.quadrature, run.degree),
-                   time_steps.tau(setting.motion_step));
+                   quadrature_or_default(setting.quadrature, run.degree), time_steps.tau(setting.smallest),
+                   setting.start.substeps_per_step);
   }
   return *shared;
 }
@@ -244,11 +264,10 @@ class LargestDifferences {
 
 /// Errors against the solution of the same discretisation in space, by BDF5 and small steps. It gives the
 /// starting values, too: Ritz maps are off it by the error in space, and how far is a matter of tau. They
-/// are those before t = 0.4, when the discrete solution has forgotten that its initial values are only close
-/// to a smooth one.
+/// are those before orders_begin.
 void run_order(MovingMesh& on, const TimeGrid& grid, Row& row) {
-  const double begin = 0.4;
-  const TimeGrid small{5, on.tau, static_cast<int>(std::lround(time_steps.end_time / on.tau)), {}};
+  const TimeGrid small{
+      5, on.smallest_tau, static_cast<int>(std::lround(time_steps.end_time / on.smallest_tau)), {}};
   const ExactState starts = exact_starts(on, StartValues::ritz);
   const State start = starts(0);
   Flow flow = cahn_hilliard_flow(on, theta_of(on.space, start));
@@ -262,7 +281,7 @@ void run_order(MovingMesh& on, const TimeGrid& grid, Row& row) {
   LargestDifferences differences(on.space);
   History<State> past(grid.order);
   State next;
-  const int first = static_cast<int>(std::lround(begin / grid.tau));
+  const int first = static_cast<int>(std::lround(orders_begin / grid.tau));
   for (int n = first - grid.order; n < first; ++n) {
     next = reference.at(n);
     past.push(next);
@@ -328,7 +347,7 @@ nlohmann::json parameters(const Setting& setting, const std::string& preset) {
           {"epsilon", epsilon},
           {"start", to_string(setting.start)},
           {"quadrature", setting.quadrature.empty() ? "that of the degree" : setting.quadrature},
-          {"tau_of_the_nodes", time_steps.tau(setting.motion_step)},
+          {"tau_of_the_nodes", time_steps.tau(setting.smallest) / setting.start.substeps_per_step},
           {"errors", "maxima over n >= 0; interpolation: over n >= q"},
           {"meshes", mesh_parameter(setting.meshes, "generated, edge length 0.84 2^-level")}};
 }
