@@ -25,7 +25,10 @@
 // Beside the published runs: BDF 2, 4 and 5; quadratic elements; the orders of BDF 1 to 5 against a solution
 // of the same discretisation with small steps.
 //
-// Expected orders (Theorem 4.1 and the BDF methods): tau^q + h^k in H1, one more in h in L2.
+// Expected orders (Theorem 4.1 and the BDF methods): tau^q + h^k in H1, one more in h in L2. The nodal H1
+// errors, of the difference to the interpolated solution, are better than O(h): those of w least, because
+// maxima over n >= 0 contain how far Ritz maps are from interpolations. BDF5 amplifies what Ritz maps as
+// starting values are off the discrete solution (w 0.030 at tau = 0.025 on 2,491 nodes; BDF4 0.004).
 #include <cmath>
 #include <map>
 #include <memory>
@@ -288,7 +291,10 @@ void run_order(MovingMesh& on, const TimeGrid& grid, Row& row) {
   }
   for (int n = first; n <= grid.steps; ++n) {
     next.t = n * grid.tau;
-    at_step(n, next.t, [&] { flow.step(past, grid.order, grid.tau, next); });
+    at_step(n, next.t, [&] {
+      flow.step(past, grid.order, grid.tau, next);
+      check_finite(next);
+    });
     differences.add(next, u_and_w(reference[n]));
     past.push(next);
   }
