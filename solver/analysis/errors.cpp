@@ -19,23 +19,26 @@ SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const
                            double t, const Field& w) {
   const int components = exact.components();
   const ShapeTable shapes = shape_functions(space.degree(), space.quadrature().points);
-  const int nodes = static_cast<int>(shapes.value.cols());
-  Eigen::MatrixXd local(nodes, components), value, dxi, deta;
+  // One column a point: what a sum over the nodes runs through.
+  const Eigen::MatrixXd values = shapes.value.transpose(), dxi = shapes.dxi.transpose(),
+                        deta = shapes.deta.transpose();
+  const int nodes = static_cast<int>(values.rows());
+  Eigen::MatrixXd local(nodes, components);
   Eigen::VectorXd exact_value(components);
-  Eigen::MatrixXd exact_gradient(3, components), gradient(3, components);
+  Eigen::MatrixXd exact_gradient(3, components);
   SquaredNorms norms{Eigen::VectorXd::Zero(components), Eigen::VectorXd::Zero(components)};
   visit_lifted_points(space, x_star, exact.surface(t), [&](const LiftedPoint& point) {
-    if (point.q == 0) {
+    if (point.q == 0)
       for (int i = 0; i < nodes; ++i) local.row(i) = w.row(space.elements()(point.element, i));
-      value.noalias() = shapes.value * local;
-      dxi.noalias() = shapes.dxi * local;
-      deta.noalias() = shapes.deta * local;
-    }
     exact.fields(t, point.y, point.shape, exact_value, exact_gradient);
-    gradient.noalias() = point.dual.col(0) * dxi.row(point.q);
-    gradient.noalias() += point.dual.col(1) * deta.row(point.q);
-    norms.L2 += point.dA * (value.row(point.q).transpose() - exact_value).cwiseAbs2();
-    norms.H1_semi += point.dA * (gradient - exact_gradient).colwise().squaredNorm().transpose();
+    for (int l = 0; l < components; ++l) {
+      const auto nodal = local.col(l);
+      const double e = values.col(point.q).dot(nodal) - exact_value[l];
+      const Vec3 e_gradient = point.dual.col(0) * dxi.col(point.q).dot(nodal) +
+                              point.dual.col(1) * deta.col(point.q).dot(nodal) - exact_gradient.col(l);
+      norms.L2[l] += point.dA * e * e;
+      norms.H1_semi[l] += point.dA * e_gradient.squaredNorm();
+    }
   });
   return norms;
 }

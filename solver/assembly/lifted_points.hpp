@@ -27,23 +27,24 @@ void visit_lifted_points(const SurfaceSpace& space, const Field& x, const Surfac
   const Quadrature& rule = space.quadrature();
   const ShapeTable shapes = shape_functions(space.degree(), rule.points);
   const int nodes = static_cast<int>(shapes.value.cols());
-  Eigen::MatrixXd local(nodes, 3), value, dxi, deta;
+  Eigen::Matrix<double, 3, Eigen::Dynamic> local(3, nodes);
   for (int element = 0; element < space.element_count(); ++element) {
-    for (int i = 0; i < nodes; ++i) local.row(i) = x.row(space.elements()(element, i));
-    value.noalias() = shapes.value * local;
-    dxi.noalias() = shapes.dxi * local;
-    deta.noalias() = shapes.deta * local;
+    for (int i = 0; i < nodes; ++i) local.col(i) = x.row(space.elements()(element, i));
     for (int q = 0; q < rule.weights.size(); ++q) {
+      Vec3 position = Vec3::Zero();
+      Eigen::Matrix<double, 3, 2> tangents = Eigen::Matrix<double, 3, 2>::Zero();
+      for (int i = 0; i < nodes; ++i) {
+        position += shapes.value(q, i) * local.col(i);
+        tangents.col(0) += shapes.dxi(q, i) * local.col(i);
+        tangents.col(1) += shapes.deta(q, i) * local.col(i);
+      }
       LiftedPoint point;
       point.element = element;
       point.q = q;
-      const Vec3 position = value.row(q);
       point.y = surface.closest_point(position);
       point.shape = surface.shape_at(point.y);
       const double s = point.shape.normal.dot(position - point.y);
 
-      Eigen::Matrix<double, 3, 2> tangents;
-      tangents << dxi.row(q).transpose(), deta.row(q).transpose();
       tangents -= point.shape.normal * (point.shape.normal.transpose() * tangents);
       tangents = (Mat3::Identity() + s * point.shape.weingarten).inverse() * tangents;
       const Eigen::Matrix2d metric = tangents.transpose() * tangents;

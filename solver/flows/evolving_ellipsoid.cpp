@@ -55,11 +55,16 @@ Concentration concentration(double t) {
   return {std::exp(-6 * t)};
 }
 
-/// Tangential gradient of a function in space.
+/// Value and tangential gradient of a function in space, where the normal is nu.
 template <class Function>
-Vec3 tangential_gradient(const LevelSet& d, const Function& f, const Vec3& x) {
-  const Vec3 normal = level_set_jet(d, x).gradient.normalized(), gradient = level_set_jet(f, x).gradient;
-  return gradient - normal.dot(gradient) * normal;
+ValueAndGradient value_and_tangential_gradient(const Function& f, const Vec3& x, const Vec3& nu) {
+  using Jet = SpaceJet<double>;
+  const Jet jet = f(Jet(x[0], 0), Jet(x[1], 1), Jet(x[2], 2));
+  return {jet.a, jet.v - nu.dot(jet.v) * nu};
+}
+
+Vec3 normal_of(const LevelSet& d, const Vec3& x) {
+  return Vec3(x[0] / d.a, x[1], x[2]).normalized();
 }
 
 }  // namespace
@@ -115,12 +120,13 @@ double ManufacturedCahnHilliard::b(const Vec3& x, double t) const {
 }
 
 Vec3 ManufacturedCahnHilliard::gradient_of_u(const Vec3& x, double t) const {
-  return tangential_gradient(LevelSet{ellipsoid_.a(t), ellipsoid_.radius}, concentration(t), x);
+  const LevelSet d{ellipsoid_.a(t), ellipsoid_.radius};
+  return value_and_tangential_gradient(concentration(t), x, normal_of(d, x)).gradient;
 }
 
 Vec3 ManufacturedCahnHilliard::gradient_of_w(const Vec3& x, double t) const {
   const LevelSet d{ellipsoid_.a(t), ellipsoid_.radius};
-  return tangential_gradient(d, Potential{d, concentration(t), epsilon_}, x);
+  return value_and_tangential_gradient(Potential{d, concentration(t), epsilon_}, x, normal_of(d, x)).gradient;
 }
 
 void ManufacturedCahnHilliard::Problem::b(double t, const Field& x, Field& nodal) const {
@@ -133,11 +139,16 @@ ExactEvolution exact_evolution(const ManufacturedCahnHilliard& exact, MovingNode
   evolution.quantities = {{"u", 1}, {"w", 1}};
   evolution.surface = [&exact](double t) { return exact.ellipsoid().surface(t); };
   evolution.trajectories = [&nodes](const Field&, double t) { return nodes.at(t); };
-  evolution.fields = [&exact](double t, const Vec3& y, const Surface::Shape&, Eigen::VectorXd& value,
+  evolution.fields = [&exact](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
                               Eigen::MatrixXd& gradient) {
-    value << exact.u(y, t), exact.w(y, t);
-    gradient.col(0) = exact.gradient_of_u(y, t);
-    gradient.col(1) = exact.gradient_of_w(y, t);
+    const LevelSet d{exact.ellipsoid().a(t), exact.ellipsoid().radius};
+    const Concentration u_now = concentration(t);
+    const ValueAndGradient u = value_and_tangential_gradient(u_now, y, shape.normal);
+    const ValueAndGradient w =
+        value_and_tangential_gradient(Potential{d, u_now, exact.epsilon()}, y, shape.normal);
+    value << u.value, w.value;
+    gradient.col(0) = u.gradient;
+    gradient.col(1) = w.gradient;
   };
   return evolution;
 }
