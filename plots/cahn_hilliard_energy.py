@@ -4,6 +4,7 @@
 Usage: python3 plots/cahn_hilliard_energy.py results/paper/cahn_hilliard_energy.json figures
 Writes figures/bk22/fig6 and fig7.{pdf,png}: the energy over [0, 0.2] and over [0, 1], a line for each mesh.
 """
+import numpy as np
 from matplotlib.figure import Figure
 
 import style
@@ -14,6 +15,9 @@ from table import TableError, has_series, series
 STEM = "cahn_hilliard_energy"
 METHOD = "bdf2"
 ENDS = {"bk22/fig6": 0.2, "bk22/fig7": 1.0}
+SETTLED = 0.4  # from here on the finest energies repeat themselves
+FINEST = 3  # that many meshes are shown there
+INSET = (0.34, 0.44, 0.42, 0.50)  # of the panel: left, bottom, width, height
 LEFT, RIGHT, TOP, BOTTOM, HEIGHT = 0.48, 0.17, 0.26, 0.36, 3.3  # inches; HEIGHT of the panel
 
 
@@ -49,23 +53,43 @@ def energy_figure(rows, end, epsilon, notes):
     figure = Figure(figsize=(style.WIDTH, height))
     axes = figure.add_axes([LEFT / style.WIDTH, below / height, (style.WIDTH - LEFT - RIGHT) / style.WIDTH,
                             HEIGHT / height])
-    for i, (row, line) in enumerate(zip(rows, style.line_styles(len(rows)))):
-        t, energy = series(row, "energy")
-        upto = t <= end * (1 + 1e-9)
-        # Markers of neighbouring lines lie apart, the same distance of the page between those of one line.
-        axes.plot(t[upto], energy[upto], **line, markevery=(0.02 + 0.1 * i / len(rows), 0.1),
-                  label=style.nodes_label(row["nodes"]))
+    lines = list(zip(rows, style.line_styles(len(rows))))
+    for i, (_, line) in enumerate(lines):  # markers of neighbouring lines lie apart, those of one line equally far
+        line["markevery"] = (0.02 + 0.1 * i / len(rows), 0.1)
+    draw_energies(axes, lines, (0, end))
     axes.set(xlim=(0, end), xlabel="$t$")
     axes.set_ylabel("Ginzburg–Landau energy", labelpad=2)
     axes.xaxis.labelpad = 1
     axes.grid(True)
     axes.legend(loc="upper right", labelspacing=0.25, handlelength=2.6)
+    if settled_range(rows[-1], end):
+        inset = axes.inset_axes(INSET)
+        draw_energies(inset, lines[-FINEST:], (SETTLED, end))
+        inset.set(xlim=(SETTLED, end), ylim=settled_range(rows[-1], end))
+        inset.grid(True)
     taus = sorted({style.power_of_ten(row["tau"]).strip("$") for row in rows})
     heading = ["BDF2", *(rf"$\tau = {tau}$" for tau in taus)]
     heading += [rf"$\varepsilon = {epsilon:g}$"] if epsilon else []
     figure.text(LEFT / style.WIDTH, 1 - 0.06 / height, ", ".join(heading), va="top")
     time_series.add_notes(figure, notes)
     return figure
+
+
+def draw_energies(axes, lines, span):
+    """Draws the energies of (row, line style) over a span of time."""
+    for row, line in lines:
+        t, energy = series(row, "energy")
+        inside = (t >= span[0]) & (t <= span[1] * (1 + 1e-9))
+        axes.plot(t[inside], energy[inside], **line, label=style.nodes_label(row["nodes"]))
+
+
+def settled_range(row, end):
+    """The energies of a run from SETTLED on, with some room; None when it is too short or does not change."""
+    t, energy = series(row, "energy")
+    late = energy[(t >= SETTLED) & (t <= end * (1 + 1e-9)) & np.isfinite(energy)]
+    if len(late) < 2 or np.ptp(late) == 0:
+        return None
+    return late.min() - 0.25 * np.ptp(late), late.max() + 0.25 * np.ptp(late)
 
 
 if __name__ == "__main__":

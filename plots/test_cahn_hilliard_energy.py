@@ -28,12 +28,13 @@ def energy_table(rows):
 
 class Energy(unittest.TestCase):
     def test_a_line_for_each_mesh_from_coarse_to_fine(self):
-        rows = [energy_row(nodes) for nodes in (2500, 54, 10146)] + [energy_row(270, 0.2), energy_row(54, method="bdf1")]
+        rows = [energy_row(nodes) for nodes in (2500, 54, 120, 10146)] + [energy_row(270, 0.2), energy_row(54, method="bdf1")]
         figures = dict(cahn_hilliard_energy.draw(energy_table(rows), ""))
         self.assertEqual(list(figures), ["bk22/fig6", "bk22/fig7"])
-        for name, end, labels in (("bk22/fig6", 0.2, ["54", "270", "2{,}500", "10{,}146"]),
-                                  ("bk22/fig7", 1, ["54", "2{,}500", "10{,}146"])):
+        for name, end, labels in (("bk22/fig6", 0.2, ["54", "120", "270", "2{,}500", "10{,}146"]),
+                                  ("bk22/fig7", 1, ["54", "120", "2{,}500", "10{,}146"])):
             axes, = figures[name].axes
+            self.assertEqual(len(axes.child_axes), 1 if end == 1 else 0)
             self.assertEqual(axes.get_xlim(), (0, end))
             self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()],
                              [f"$N = {label}$" for label in labels])
@@ -41,6 +42,10 @@ class Energy(unittest.TestCase):
                 self.assertLessEqual(line.get_xdata().max(), end * (1 + 1e-9))
             self.assertGreater(min(line.get_xdata().max() for line in lines_of(axes)), 0.19)
             self.assertEqual(len({line.get_marker() for line in axes.lines}), len(labels))
+            for inset in axes.child_axes:
+                self.assertEqual((inset.get_xlim(), len(lines_of(inset))), ((0.4, 1), 3))
+                late = [line.get_ydata() for line in lines_of(inset)][-1]
+                self.assertTrue(inset.get_ylim()[0] < late.min() < late.max() < inset.get_ylim()[1])
             self.assertEqual(texts_of(figures[name]), r"BDF2, $\tau = 10^{-4}$, $\varepsilon = 0.1$")
 
     def test_failed_runs_are_noted_and_of_runs_alike_that_with_the_smallest_step_counts(self):
