@@ -41,7 +41,7 @@ TEST_F(Programs, TheEnergyRisesWithTheSurfaceAndTheMassStays) {
     SCOPED_TRACE(row.cell);
     EXPECT_EQ(row.series.at("t").size(), 301u);
     EXPECT_LT(row.values.at("mass_drift"), 1e-12);
-    EXPECT_GT(row.values.at("first_rise"), 0.4);
+    EXPECT_GT(row.values.at("first_rise"), 0.3);
     EXPECT_GT(row.values.at("first_maximum_time"), 0.005);
     EXPECT_LT(row.values.at("first_maximum_time"), 0.015);
     EXPECT_EQ(row.values.count("first_minimum_time"), 0u) << "beyond the end";
@@ -58,13 +58,12 @@ TEST_F(Programs, RefuseStartingValuesThatNobodyKnows) {
 }
 
 TEST_F(Programs, InitialValuesDifferByWhatTheSchemesSay) {
-  const Table table = table_of(
-      "cahn_hilliard_initial_values --levels 0 --schemes interpolation,ritz,interpolation_theta "
-      "--constants unit,printed");
-  ASSERT_EQ(table.rows.size(), 6u);
+  const Table table =
+      table_of("cahn_hilliard_initial_values --levels 0 --schemes interpolation,ritz,interpolation_theta");
+  ASSERT_EQ(table.rows.size(), 3u);
   for (const Row& row : table.rows) {
     SCOPED_TRACE(row.cell);
-    EXPECT_NEAR(row.values.at("largest_u0"), row.more.at("constant") == "unit" ? 1 : 0.9, 1e-5);
+    EXPECT_NEAR(row.values.at("largest_u0"), 1, 1e-9);
     EXPECT_LT(row.values.at("mass_drift"), 1e-11);
     EXPECT_EQ(row.more.at("snapshots").size(), 5u);
     const std::string scheme = row.more.at("scheme");
