@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// The Ginzburg-Landau energy of the Cahn-Hilliard equation on an ellipsoid that swells and shrinks (bk22
+// §9.2, Figures 6 and 7)
+//
+// Sample runs:  build/bin/cahn_hilliard_energy --preset check --output energy.json
+//               build/bin/cahn_hilliard_energy --levels 4,5 --end-time 0.2
+//               build/bin/cahn_hilliard_energy --bdf 1 --levels 4 --steps 1 --end-time 0.2
+//
+// Writes:       results/paper/cahn_hilliard_energy.{json,csv,tex}, from which plots/cahn_hilliard_energy.py
+// draws
+//               figures/bk22/fig6 and fig7
+//
+// d•u + u div v = Lap w, w = -epsilon Lap u + (u³ - u)/epsilon with epsilon = 0.1 on {x1²/a(t) + x2² + x3² =
+// 1}, a(t) = 1 + 0.25 sin(10 pi t), from u = 0.1 cos(2 pi x1) cos(2 pi x2) cos(2 pi x3): bk22 (8.3) with
+// linear elements, without theta, from the interpolated u, with BDF2 and tau = 1e-4. The setting is that of
+// Elliott and Ranner (2015), §6.2, who use the linearly implicit Euler method: BDF1 stands beside.
+//
+// Expected: the energy does not fall monotonically, because the surface grows and shrinks; it tends to a
+// function of time with the period of the surface, 0.2. The integral of u stays what it is, to round-off.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "experiments/harness/experiment.hpp"
+#include "experiments/harness/grid.hpp"
+#include "experiments/harness/method_options.hpp"
+#include "experiments/harness/warn.hpp"
+#include "solver/analysis/energy_series.hpp"
+#include "solver/error.hpp"
+#include "solver/flows/cahn_hilliard.hpp"
+#include "solver/flows/evolving_ellipsoid.hpp"
+#include "solver/mesh/generate.hpp"
+
+namespace {
+
+using namespace esfem;
+
+const double pi = std::acos(-1.0), epsilon = 0.1, largest_tau = 1e-4;
+const EvolvingEllipsoid moving_ellipsoid{0.25, 0.2, 1};
+const double paper_end = 1, figure_6_end = 0.2, settled = 0.4;
+const int recorded_times = 2000;
+
+/// Of the meshes of level 0, 1, ..: with linear elements they have 54, 120, 270, 590, 1180, 2500, 5000 and
+/// 10,146 nodes. The paper says what the first and the last one have.
+const std::vector<double> edge_lengths = {0.62911,  0.47455,  0.32256,  0.21734,
+                                          0.153009, 0.104732, 0.074087, 0.052133};
+const int level_count = static_cast<int>(edge_lengths.size());
+
+struct Run {
+  int bdf, level, k;
+  double end_time;
+
+  HalvedSteps steps() const { return {end_time, largest_tau}; }
+};
+
+struct OwnOptions {
+  std::optional<double> end_time;
+};
+
+struct Setting {
+  std::vector<Run> runs;
+  int degree;
+  Start start;
+  std::vector<std::string> meshes;
+};
+
+std::vector<Run> preset_runs(const std::string& preset) {
+  std::vector<Run> runs;
+  if (preset == "paper") {
+    for (const int level : range(0, level_count - 1)) runs.push_back({2, level, 0, paper_end});
+    for (const int level : range(3, 6)) runs.push_back({1, level, 0, figure_6_end});
+  } else {
+    runs = {{2, 1, 0, paper_end}, {2, 4, 0, figure_6_end}, {2, 5, 0, 0.05}, {1, 4, 0, 0.05}};
+  }
+  return runs;
+}
+
+Setting resolve(const Options& options, const OwnOptions& own) {
+  Setting setting;
+  setting.degree = options.degree.value_or(1);
+  setting.start = options.start.value_or(parse_start("cascade"));
+  setting.meshes = options.meshes;
+  if (setting.start.kind == Start::exact)
+    throw InputError("--start exact: there is no exact solution; expected cascade or substeps:K");
+  if (!options.levels && !options.steps && !options.bdf && !own.end_time && options.meshes.empty()) {
+    setting.runs = preset_runs(options.preset);
+    return setting;
+  }
+  const std::vector<int> levels = mesh_levels(options, range(0, level_count - 1));
+  if (options.meshes.empty()) require_levels(levels, level_count, "levels");
+  for (const int level : levels)
+    for (const int k : options.steps.value_or(std::vector<int>{0}))
+      setting.runs.push_back({options.bdf.value_or(2), level, k, own.end_time.value_or(paper_end)});
+  return setting;
+}
+
+Field initial_values(const Field& x) {
+  Field u(x.rows(), 1);
+  u = 0.1 * (2 * pi * x.array()).cos().rowwise().prod().matrix();
+  return u;
+}
+
+/// u from interpolation and w from the second equation, (3.12).
+CahnHilliardState initial_state(const SurfaceSpace& space, const Field& x) {
+  const Field u = initial_values(x);
+  const Field w = cahn_hilliard_w(space, x, u, epsilon, load_of_g(space, DoubleWell(), 0, x, u));
+  return cahn_hilliard_state(space, 0, x, u, w);
+}
+
+/// The numbers that claims are about, from the series of all steps. The energy rises with the surface at
+/// first, to a maximum that is sought in [0, 0.1], and has its minimum in the first period after it.
+void describe_energy(const Series& series, Row& row) {
+  const std::vector<double>&t = series.at("t"), &energy = series.at("energy"), &mass = series.at("mass");
+  const double end = t.back(), slack = row.tau / 2;
+  for (const double time : {0.0, 0.05, 0.1, 0.2, 0.5, 1.0})
+    if (time <= end + slack) row.values[format("energy_at_%g", time)] = energy[nearest(series, time)];
+
+  double drift = 0;
+  for (const double value : mass) drift = std::max(drift, std::abs(value - mass.front()));
+  row.values["mass"] = mass.front();
+  row.values["mass_drift"] = drift;
+  row.values["min_u"] = *std::min_element(series.at("min_u").begin(), series.at("min_u").end());
+  row.values["max_u"] = *std::max_element(series.at("max_u").begin(), series.at("max_u").end());
+
+  const std::size_t top = largest_in(series, "energy", 0, std::min(0.1, end));
+  row.values["first_maximum_time"] = t[top];
+  row.values["first_maximum"] = energy[top];
+  row.values["first_rise"] = energy[top] - energy.front();
+  if (end < figure_6_end - slack) return;
+  const std::size_t bottom = smallest_in(series, "energy", t[top], figure_6_end + slack);
+  row.values["first_minimum_time"] = t[bottom];
+  row.values["first_fall"] = energy[top] - energy[bottom];
+  row.values["second_rise"] = energy[nearest(series, figure_6_end)] - energy[bottom];
+  if (end < paper_end - slack) return;
+  row.values["period"] = period(series, "energy", settled, 0.1, 0.3);
+  row.values["aperiodicity"] = aperiodicity(series, "energy", moving_ellipsoid.period);
+}
+
+std::string cell_name(const Run& run) {
+  return format("bdf%d_h%d_tau%d", run.bdf, run.level, run.k);
+}
+
+Row run_cell(const Setting& setting, const Run& run, Row row, const std::string& folder) {
+  // 1. The unit sphere and the finite element space on it.
+  const auto generate = [&] { return generate_mesh(sphere(1), edge_lengths[run.level]); };
+  const Mesh mesh = initial_mesh(setting.meshes, run.level, generate, sphere(1), setting.degree);
+  const SurfaceSpace space(mesh);
+  describe_mesh(mesh, row);
+
+  // 2. The flow on nodes that follow the normal velocity of the surface.
+  MovingNodes nodes(moving_ellipsoid.velocity(), mesh.nodes, row.tau / setting.start.substeps_per_step);
+  const NodalMotion motion = [&](double t) -> const Field& { return nodes.at(t); };
+  CahnHilliard flow(space, DoubleWell(), motion, epsilon);
+
+  // 3. The time steps.
+  Series series;
+  std::optional<Checkpoint> checkpoint = checkpoint_in(folder, cell_name(run));
+  if (checkpoint) attach(*checkpoint, series);
+  const TimeGrid grid{run.bdf, row.tau, row.steps, setting.start};
+  const auto record = [&](int, const CahnHilliardState& state) {
+    record_energy(space, state, epsilon, series);
+  };
+  integrate(flow, grid, initial_state(space, mesh.nodes), {}, record, checkpoint ? &*checkpoint : nullptr);
+  if (checkpoint) warn(checkpoint->remark());
+
+  // 4. The row of the table.
+  row.series = thinned(series, recorded_times);
+  describe_energy(series, row);
+  return row;
+}
+
+/// Seconds on one core; the meshes of level l have about 54 2.11^l nodes.
+double estimated_cost(const Run& run) {
+  const double nodes = 54 * std::pow(2.11, run.level);
+  return run.steps().count(run.k) * (4e-4 + 2.8e-6 * nodes);
+}
+
+std::vector<Cell> cells(const Setting& setting) {
+  std::vector<Cell> list;
+  for (const Run& run : setting.runs) {
+    list.push_back(
+        {cell_name(run), estimated_cost(run),
+         [=](const Row& row, const std::string& folder) { return run_cell(setting, run, row, folder); },
+         planned_row(run.level, run.steps(), run.k, {{"method", format("bdf%d", run.bdf)}})});
+  }
+  return list;
+}
+
+nlohmann::json parameters(const Setting& setting, const std::string& preset) {
+  return {{"preset", preset},
+          {"epsilon", epsilon},
+          {"amplitude", moving_ellipsoid.amplitude},
+          {"period", moving_ellipsoid.period},
+          {"degree", setting.degree},
+          {"largest_tau", largest_tau},
+          {"start", to_string(setting.start)},
+          {"meshes", mesh_parameter(setting.meshes, "generated, 54 to 10,146 nodes of linear elements")}};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  OwnOptions own;
+  Experiment experiment;
+  experiment.stem = "cahn_hilliard_energy";
+  experiment.paper = "bk22";
+  experiment.help =
+      "Ginzburg-Landau energy of the Cahn-Hilliard equation, epsilon = 0.1, on the ellipsoid with a(t) = 1 + "
+      "0.25 sin(10 pi t)\n"
+      "(bk22 Figures 6 and 7): time series of energy, mass, min and max of u, and when the energy rises and "
+      "falls. Step sizes\n"
+      "1e-4 2^-k; levels 0 to 7: 54 to 10,146 nodes of linear elements. No units.\n"
+      "Without --levels, --steps, --bdf, --end-time, --mesh: the runs of the preset. With one of them: all "
+      "combinations, where\n"
+      "not given of all levels, k = 0, BDF2, t to 1.\n\n"
+      "Example: cahn_hilliard_energy --levels 4 --bdf 3 --end-time 0.2 --output energy.json";
+  experiment.add_options = [&](CLI::App& app) {
+    app.add_option("--end-time", own.end_time, "t at the end of each run")
+        ->check(CLI::PositiveNumber)
+        ->group(method_group);
+  };
+  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
+  experiment.parameters = [&](const Options& options) {
+    return parameters(resolve(options, own), options.preset);
+  };
+  return run_experiment(experiment, argc, argv);
+}
