@@ -63,14 +63,18 @@ class LinearisedCahnHilliard {
 
   /// The space gives elements, degree and quadrature; it must outlive the flow. newton_tolerance: g is
   /// linearised again around the u just computed until no node's u changes by more than this, which makes the
-  /// step fully implicit; infinite: once.
+  /// step fully implicit; infinite: once. Throws InputError unless it and epsilon are positive.
   LinearisedCahnHilliard(const SurfaceSpace& space, Problem problem, NodalMotion motion, double epsilon,
                          double newton_tolerance = std::numeric_limits<double>::infinity())
       : space_(space),
         problem_(std::move(problem)),
         scheme_(space, std::move(motion), epsilon),
         newton_tolerance_(newton_tolerance),
-        W_(space.matrix()) {}
+        W_(space.matrix()) {
+    if (!(newton_tolerance > 0))
+      throw InputError(
+          format("tolerance of Newton's method: found %g, expected a positive number", newton_tolerance));
+  }
 
   /// One step with BDF of order q: fills all fields of next. Throws SingularityError where elements have
   /// degenerated, NumericsError when Newton's method does not converge.
