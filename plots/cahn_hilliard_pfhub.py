@@ -131,7 +131,7 @@ def _energies(figure, place, rows):
     axes.set_xlim(FIRST_TIME, 1.3 * last)
     axes.set_xlabel("$t$", labelpad=1)
     time_series.scale(axes, np.concatenate([energy, [GREAT_CIRCLE]]), logarithmic=True)
-    axes.set_ylabel(r"$\int f(c) + \frac{\kappa}{2}\, |\nabla c|^2$", labelpad=2)
+    axes.set_ylabel(r"energy  $\int\, f(c) + \frac{\kappa}{2}\, |\nabla c|^2$", labelpad=2)
     style.limit_line(axes, GREAT_CIRCLE, "one great circle between the phases")
     axes.grid(True)
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.07), fontsize=8, labelspacing=0.3, handlelength=2.8)
