@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/pfhub_sphere.hpp"
 
-#include <cmath>
-
 namespace esfem {
 
-double pfhub_initial_value(const Vec3& x) {
-  const double wave = std::cos(0.13 * x[0]) * std::cos(0.087 * x[1]);
-  return 0.5 + 0.01 * (std::cos(0.105 * x[0]) * std::cos(0.11 * x[1]) + wave * wave +
-                       std::cos(0.025 * x[0] - 0.15 * x[1]) * std::cos(0.07 * x[0] - 0.02 * x[1]));
+Field pfhub_initial_values(const Field& x) {
+  const auto x1 = x.col(0).array(), x2 = x.col(1).array();
+  return 0.5 +
+         0.01 * ((0.105 * x1).cos() * (0.11 * x2).cos() + ((0.13 * x1).cos() * (0.087 * x2).cos()).square() +
+                 (0.025 * x1 - 0.15 * x2).cos() * (0.07 * x1 - 0.02 * x2).cos());
 }
 
-CahnHilliardState pfhub_state(const SurfaceSpace& space, const Field& x) {
-  Field c(x.rows(), 1);
-  for (int j = 0; j < x.rows(); ++j) c(j) = pfhub_initial_value(x.row(j));
-  Field w = cahn_hilliard_w(space, x, c, PfhubSphere::epsilon, load_of_g(space, PfhubSphere(), 0, x, c));
-  return cahn_hilliard_state(space, 0, x, std::move(c), std::move(w));
+CahnHilliardState pfhub_state(const SurfaceSpace& space, const Field& x, const Field& c) {
+  const Field w =
+      cahn_hilliard_w(space, x, c, PfhubSphere::epsilon, load_of_g(space, PfhubSphere(), 0, x, c));
+  return cahn_hilliard_state(space, 0, x, c, w);
 }
 
 double pfhub_energy(const SurfaceSpace& space, const Field& x, const Field& c) {

@@ -34,11 +34,11 @@ struct PfhubSphere {
   void b(double, const Field&, Field&) const {}
 };
 
-/// c at the start, in the Cartesian coordinates of the sphere.
-double pfhub_initial_value(const Vec3& x);
+/// c at the start in the nodes x, N x 1: three waves in the Cartesian coordinates x1, x2, at most 0.03 high.
+Field pfhub_initial_values(const Field& x);
 
-/// The state at t = 0 on nodes x, interpolated; w from the second equation.
-CahnHilliardState pfhub_state(const SurfaceSpace& space, const Field& x);
+/// The state at t = 0 on nodes x with given c (N x 1); w from the second equation.
+CahnHilliardState pfhub_state(const SurfaceSpace& space, const Field& x, const Field& c);
 
 /// Total energy, integral of f + kappa/2 |grad c|² over Gamma_h[x]. c: N x 1.
 double pfhub_energy(const SurfaceSpace& space, const Field& x, const Field& c);

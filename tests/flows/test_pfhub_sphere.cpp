@@ -23,7 +23,7 @@ TEST(PfhubSphere, InitialEnergyAndMassAreThoseOnTheExactSphere) {
   const auto errors = [](int subdivisions) {
     const Mesh mesh = sphere_mesh(PfhubSphere::radius, 2, subdivisions);
     const SurfaceSpace space(mesh);
-    const CahnHilliardState start = pfhub_state(space, mesh.nodes);
+    const CahnHilliardState start = pfhub_state(space, mesh.nodes, pfhub_initial_values(mesh.nodes));
     return std::pair(std::abs(pfhub_energy(space, start.x, start.u) - 1002.0485695794),
                      std::abs(start.Mu.sum() - 63236.9697204757));
   };
