@@ -7,9 +7,8 @@
 //               build/bin/cahn_hilliard_pfhub --degree 2 --levels 0-2 --end 300
 //               build/bin/cahn_hilliard_pfhub --stepping moose --levels 0,1
 //
-// Writes:       results/paper/cahn_hilliard_pfhub.{json,csv,tex}, from which plots/cahn_hilliard_pfhub.py
-// draws
-//               figures/pfhub/fig1d, and c on the sphere as
+// Writes:       results/paper/cahn_hilliard_pfhub.{json,csv,tex}, from which
+//               plots/cahn_hilliard_pfhub.py draws figures/pfhub/fig1d, and c on the sphere as
 //               results/paper/cells/cahn_hilliard_pfhub/CELL/surfaces.pvd
 //
 // Cahn-Hilliard equation on a sphere of radius 100 at rest (solver/flows/pfhub_sphere.hpp), from waves around
@@ -17,12 +16,14 @@
 // Stepping:
 //   adaptive  BDF2, steps from 0.01 on that follow c, as far as t = 1.5e5
 //   moose     backward Euler with Newton's method and the steps of the published run until its third time:
-//             1, 1.1, .., 1.1^4, and then 15 of 1.1^5. They can be told from its times: 6.1051 = 1 + ..
-//             + 1.1^4, and 14.158 and 30.263 come 5 and 15 steps of 1.1^5 later.
+//             1, 1.1, .., 1.1^4, and then 15 of 1.1^5. Its times tell them: 6.1051 = 1 + .. + 1.1^4, and
+//             14.158 and 30.263 come 5 and 15 steps of 1.1^5 later.
 //
-// Expected: with its steps, its energies to 3%. With small steps the decomposition comes later, and what it
-// ends with depends on the mesh: an interface is 2 sqrt 5 = 4.5 wide, and a mesh of 6,000 nodes has edges of
-// 5, which pin it.
+// Where linear elements have become steady the run goes on with quadratic ones on the same triangles.
+//
+// Expected: with its steps, its energies to 3%; with small steps the decomposition comes 3 time units later.
+// The steady states of 3,000 and 6,000 linear nodes are those of their meshes: an interface is 2 sqrt 5 = 4.5
+// wide, and edges of 5 or 7 pin it. On quadratic elements coarsening goes on.
 #include <algorithm>
 #include <array>
 #include <cmath>

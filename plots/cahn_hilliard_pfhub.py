@@ -29,8 +29,9 @@ FIRST_TIME = 1  # of the logarithmic axis
 MOOSE_STEPS = "backward Euler, MOOSE's steps"
 # sqrt(2 kappa 5) 0.4^3 / 6 is the energy of a flat interface per length, 2 pi 100 the length of a great circle.
 GREAT_CIRCLE = np.sqrt(2 * 2 * 5) * 0.4**3 / 6 * 2 * np.pi * 100
+COLOURS = (style.SKY_BLUE, style.BLUE, style.ORANGE, style.GREEN, style.PURPLE)
 PANEL, AXIS, LEFT = 2.9, 0.42, 0.56  # inches
-LABEL = 0.24  # left of the strips
+LABEL, STRIP_GAP = 0.24, 0.13  # left of the strips and above them
 
 
 def draw(table, folder):
@@ -38,7 +39,7 @@ def draw(table, folder):
     rows = [row for row in table["rows"] if has_series(row) and series(row, "energy")]
     if not rows:
         raise TableError("no run has the series energy")
-    rows.sort(key=lambda row: (row.get("stepping") != MOOSE_STEPS, row["nodes"], row.get("stepping", "")))
+    rows.sort(key=lambda row: (row.get("stepping") != MOOSE_STEPS, row["nodes"], -(_tolerance(row) or 0)))
     strips = [(_mesh(row), Strip(evenly(Snapshots(row, folder, STEM).files, PICTURES), VIEW,
                                  style.WIDTH - LABEL - 0.62)) for row in _pictured(rows, folder)]
     yield "pfhub/fig1d", _figure(rows, strips, time_series.failure_notes(table["rows"]))
@@ -60,26 +61,32 @@ def _mesh(row):
     return f"{row.get('elements', '')}, {style.nodes_label(row['nodes'])}"
 
 
+def _tolerance(row):
+    """That of adaptive steps, or None."""
+    found = re.search(r", tolerance (\S+)$", row.get("stepping", ""))
+    return float(found[1]) if found else None
+
+
 def _name(row):
-    tolerance = re.fullmatch(r"BDF(\d), tolerance (\S+)", row.get("stepping", ""))
-    steps = (rf"BDF{tolerance[1]}, tol. {style.power_of_ten(float(tolerance[2]))}" if tolerance
-             else row.get("stepping", ""))
+    steps, tolerance = row.get("stepping", ""), _tolerance(row)
+    if tolerance:
+        steps = f"{steps.partition(',')[0]}, tol. {style.power_of_ten(tolerance)}"
     return f"{_mesh(row)}, {steps}"
 
 
 def _line_styles(rows):
-    """MOOSE's steps in vermillion; the others from light to dark with the number of nodes, dashes by elements."""
-    lines = []
-    own = [row for row in rows if row.get("stepping") != MOOSE_STEPS]
-    colours = (style.SKY_BLUE, style.BLUE, style.PURPLE, style.GREEN, style.ORANGE)
+    """A colour for each run, dashes by elements and steps; on a mesh that is there already a thinner line on top."""
+    colours = iter(COLOURS * len(rows))
+    meshes, styles = set(), []
     for row in rows:
         if row.get("stepping") == MOOSE_STEPS:
-            lines.append({"color": style.VERMILLION, "linestyle": style.DASHES["short"], "linewidth": 1.4, "zorder": 3})
+            styles.append({"color": style.VERMILLION, "linestyle": style.DASHES["short"], "linewidth": 1.4, "zorder": 3})
             continue
-        quadratic = row.get("elements") == "P2"
-        lines.append({"color": colours[own.index(row) % len(colours)], "linewidth": 1.3,
-                      "linestyle": style.DASHES["solid" if not quadratic else "dash-dot"]})
-    return lines
+        mesh = _mesh(row)
+        styles.append({"color": next(colours), "linewidth": 0.7 if mesh in meshes else 1.5,
+                       "linestyle": style.DASHES["dash-dot" if row.get("elements") == "P2" else "solid"]})
+        meshes.add(mesh)
+    return styles
 
 
 def published():
@@ -91,13 +98,13 @@ def published():
 
 def _figure(rows, strips, notes):
     note_height = time_series.LINE * len(notes)
-    pictures = sum(strip.height + 0.06 for _, strip in strips)
+    pictures = sum(strip.height + STRIP_GAP for _, strip in strips)
     height = pictures + 0.1 + PANEL + AXIS + note_height
     figure = Figure(figsize=(style.WIDTH, height))
     mappable = ScalarMappable(Normalize(0.3, 0.7), "viridis")
     bottom = height - 0.04
     for label, strip in strips:
-        bottom -= strip.height + 0.06
+        bottom -= strip.height + STRIP_GAP
         strip.draw(figure, LABEL, bottom, facets_per_side=2, linewidth=0, label=_time_label,
                    colours=lambda surface: (surface.data["c"], mappable))
         figure.text(0.02 / style.WIDTH, (bottom + strip.height - strip.pictures / 2) / height, label, rotation=90,
