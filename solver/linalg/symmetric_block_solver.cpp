@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/linalg/symmetric_block_solver.hpp"
 
-#include <cholmod.h>
 #include <dmumps_c.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "solver/error.hpp"
+#include "solver/linalg/metis_ordering.hpp"
 #include "solver/linalg/thread_limit.hpp"
 
 namespace esfem {
@@ -20,39 +20,12 @@ enum Job { initialise = -1, terminate = -2, analyse = 1, factorise_numbers = 2, 
 const int general_symmetric = 2, sequential_communicator = -987654;
 const int singular = -10;
 
-/// Nodes in the order of elimination: METIS's nested dissection, called by CHOLMOD. MUMPS's own call of METIS
-/// orders large systems differently in each process, so that runs could not be repeated to the bit.
-std::vector<int> elimination_order(const SparsityPattern& pattern) {
-  cholmod_common common;
-  cholmod_start(&common);
-  common.print = 0;
-  common.error_handler = nullptr;
-  cholmod_sparse lower = {};
-  lower.nrow = lower.ncol = pattern.size;
-  lower.nzmax = pattern.row.size();
-  lower.p = const_cast<int*>(pattern.column_start.data());
-  lower.i = const_cast<int*>(pattern.row.data());
-  lower.stype = -1;
-  lower.itype = CHOLMOD_INT;
-  lower.xtype = CHOLMOD_PATTERN;
-  lower.dtype = CHOLMOD_DOUBLE;
-  lower.sorted = lower.packed = true;
-  std::vector<int> order(pattern.size);
-  const bool done = cholmod_metis(&lower, nullptr, 0, /*postorder=*/true, order.data(), &common);
-  const int status = common.status;
-  cholmod_finish(&common);
-  if (!done)
-    throw NumericsError(
-        format("nested dissection of %d nodes failed (CHOLMOD status %d)", pattern.size, status));
-  return order;
-}
-
 }  // namespace
 
 struct SymmetricBlockSolver::Mumps {
   std::shared_ptr<const SparsityPattern> pattern;
   std::vector<int> row, column;  ///< of the entries, counted from 1, in the order of `values`
-  std::vector<int> place;        ///< of the unknowns in the elimination, counted from 1
+  std::vector<int> rank;         ///< of the unknowns in the elimination, counted from 1
   Eigen::VectorXd values, y;
   bool factorised = false;
   DMUMPS_STRUC_C instance = {};
@@ -91,11 +64,11 @@ SymmetricBlockSolver::Mumps::Mumps(std::shared_ptr<const SparsityPattern> shared
     add(2 * i + 2, 2 * j + 1);
     if (i != j) add(2 * i + 1, 2 * j + 2);
   });
-  const std::vector<int> order = elimination_order(*pattern);
-  place.resize(2 * order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    place[2 * order[k]] = 2 * k + 1;
-    place[2 * order[k] + 1] = 2 * k + 2;
+  const std::vector<int> ordering = metis_ordering(*pattern);
+  rank.resize(2 * pattern->size);
+  for (int k = 0; k < pattern->size; ++k) {
+    rank[2 * ordering[k]] = 2 * k + 1;
+    rank[2 * ordering[k] + 1] = 2 * k + 2;
   }
   values.setZero(row.size());
   y.setZero(2 * pattern->size);
@@ -106,7 +79,7 @@ SymmetricBlockSolver::Mumps::Mumps(std::shared_ptr<const SparsityPattern> shared
   for (const int stream : {1, 2, 3}) control(stream) = -1;
   control(4) = 0;    // prints nothing
   control(6) = 0;    // no permutation by values: the analysis sees the pattern alone
-  control(7) = 1;    // the ordering below
+  control(7) = 1;    // the order is given: MUMPS's own choice differs from process to process
   control(8) = 0;    // no scaling
   control(12) = 1;   // no 2 x 2 pivots in the ordering
   control(14) = 50;  // percent of spare memory
@@ -114,7 +87,7 @@ SymmetricBlockSolver::Mumps::Mumps(std::shared_ptr<const SparsityPattern> shared
   instance.nnz = static_cast<MUMPS_INT8>(row.size());
   instance.irn = row.data();
   instance.jcn = column.data();
-  instance.perm_in = place.data();
+  instance.perm_in = rank.data();
   instance.a = values.data();
   instance.rhs = y.data();
   instance.nrhs = 1;
