@@ -99,7 +99,7 @@ def published():
 def _figure(rows, strips, notes):
     note_height = time_series.LINE * len(notes)
     pictures = sum(strip.height + STRIP_GAP for _, strip in strips)
-    height = pictures + 0.1 + PANEL + AXIS + note_height
+    height = pictures + 0.16 + PANEL + AXIS + note_height
     figure = Figure(figsize=(style.WIDTH, height))
     mappable = ScalarMappable(Normalize(0.3, 0.7), "viridis")
     bottom = height - 0.04
@@ -113,7 +113,7 @@ def _figure(rows, strips, notes):
         top = height - 0.04
         bar = figure.add_axes([1 - 0.5 / style.WIDTH, (bottom + 0.3) / height, 0.09 / style.WIDTH,
                                (top - bottom - 0.45) / height])
-        figure.colorbar(mappable, cax=bar).set_label("$c$", labelpad=1)
+        figure.colorbar(mappable, cax=bar, ticks=np.linspace(0.3, 0.7, 5)).set_label("$c$", labelpad=1)
     _energies(figure, [LEFT / style.WIDTH, (AXIS + note_height) / height, 1 - (LEFT + 0.1) / style.WIDTH,
                        PANEL / height], rows)
     time_series.add_notes(figure, notes)

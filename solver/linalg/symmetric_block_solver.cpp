@@ -42,7 +42,7 @@ struct SymmetricBlockSolver::Mumps {
   /// Control parameter `number` as MUMPS's manual counts them.
   int& control(int number) { return instance.icntl[number - 1]; }
 
-  /// Calls visit(k, i, j) for the entries of the lower triangle; those of Q count twice.
+  /// Calls visit(k, i, j) for each entry of the pattern, the k-th, in row i and column j.
   template <class Visit>
   void for_each_entry(const Visit& visit) const {
     for (int j = 0; j < pattern->size; ++j)
