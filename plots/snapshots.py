@@ -130,8 +130,10 @@ class Strip:
         return max(box[3] - box[2] for box in self.boxes)
 
     def draw(self, figure, left, bottom, **options):
-        """Draws the strip with its lower left corner there; `options` of draw_surface, but `colours(surface)`."""
+        """Draws the strip with its lower left corner there; `options` of draw_surface, but `colours(surface)`, and
+        `label(t)`, what is written below the surface at time t."""
         colours = options.pop("colours", lambda surface: None)
+        label = options.pop("label", lambda t: f"$t = {t:.3g}$")
         height, x = figure.get_size_inches()[1], left + self.left
         for t, surface, box in zip(self.times, self.surfaces, self.boxes):
             wide, high = self.scale * (box[1] - box[0]), self.scale * (box[3] - box[2])
@@ -140,6 +142,5 @@ class Strip:
             axes.set(xlim=box[:2], ylim=box[2:])
             axes.set_axis_off()
             draw_surface(axes, surface, self.rotation, colours=colours(surface), **options)
-            figure.text((x + wide / 2) / style.WIDTH, bottom / height, f"$t = {t:.3g}$", ha="center", va="bottom",
-                        fontsize=8.5)
+            figure.text((x + wide / 2) / style.WIDTH, bottom / height, label(t), ha="center", va="bottom", fontsize=8.5)
             x += wide + STRIP_GAP

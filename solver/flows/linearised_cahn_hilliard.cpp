@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/linearised_cahn_hilliard.hpp"
+
+#include <cmath>
+
+#include "solver/error.hpp"
+#include "solver/flows/regularity.hpp"
+
+namespace esfem {
+
+LinearisedCahnHilliardScheme::LinearisedCahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion,
+                                                           double epsilon)
+    : space_(space),
+      motion_(std::move(motion)),
+      epsilon_(epsilon),
+      M_(space.matrix()),
+      A_(space.matrix()),
+      aM_(space.matrix()),
+      aB_(space.matrix()),
+      block_(space.pattern()) {
+  if (!(epsilon > 0) || !std::isfinite(epsilon))
+    throw InputError(format("epsilon: found %g, expected a positive number", epsilon));
+}
+
+void LinearisedCahnHilliardScheme::prepare(const History<State>& history, int q, State& next) {
+  next.x = motion_(next.t);
+  assemble_regular(space_, next.x, M_, A_);
+  history.extrapolate(q, &State::u, next.u);
+}
+
+void LinearisedCahnHilliardScheme::advance(const History<State>& history, int q, double tau,
+                                           const Field& load, const SymmetricMatrix& W, State& next) {
+  const double a = history.delta(q)[0] / tau;
+  aM_.values = a * M_.values;
+  aB_.values = -a * (epsilon_ * A_.values + W.values / epsilon_);
+  // w first: A and B have good pivots on the diagonal, for small steps and for large ones.
+  block_.factorise(A_, aM_, aB_);
+  history.bdf_sum(q, &State::Mu, Mu_sum_);
+  W.multiply(next.u, Wu_);
+  next.w = Mu_sum_ / -tau;
+  next.u = a / epsilon_ * (load - Wu_);
+  block_.solve(next.w, next.u);
+  M_.multiply(next.u, next.Mu);
+}
+
+}  // namespace esfem

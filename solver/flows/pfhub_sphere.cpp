@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/flows/pfhub_sphere.hpp"
+
+namespace esfem {
+
+Field pfhub_initial_values(const Field& x) {
+  const auto x1 = x.col(0).array(), x2 = x.col(1).array();
+  return 0.5 +
+         0.01 * ((0.105 * x1).cos() * (0.11 * x2).cos() + ((0.13 * x1).cos() * (0.087 * x2).cos()).square() +
+                 (0.025 * x1 - 0.15 * x2).cos() * (0.07 * x1 - 0.02 * x2).cos());
+}
+
+CahnHilliardState pfhub_state(const SurfaceSpace& space, const Field& x, const Field& c) {
+  const Field w =
+      cahn_hilliard_w(space, x, c, PfhubSphere::epsilon, load_of_g(space, PfhubSphere(), 0, x, c));
+  return cahn_hilliard_state(space, 0, x, c, w);
+}
+
+double pfhub_energy(const SurfaceSpace& space, const Field& x, const Field& c) {
+  const auto density = [](const PointData<1>& p, Integrand<1, 0>& load) {
+    load.value[0] = PfhubSphere::f(p.u[0]) + PfhubSphere::kappa / 2 * dot(p.grad[0], p.grad[0]);
+  };
+  Field load;
+  space.assemble_load<1, 1, 0>(x, c, density, load);
+  return load.sum();  // the shape functions sum to 1
+}
+
+}  // namespace esfem
