@@ -28,8 +28,8 @@ class SymmetricBlockSolver {
   void solve(Field& r_to_u, Field& s_to_w);
 
  private:
-  struct Mumps;
-  std::unique_ptr<Mumps> mumps_;
+  struct Factor;
+  std::unique_ptr<Factor> factor_;
 };
 
 }  // namespace esfem

@@ -86,7 +86,7 @@ TEST(SymmetricBlockSolver, SaysWhatIsWrong) {
   SymmetricMatrix zero = of.P;
   zero.values.setZero();
   EXPECT_THAT([&] { solver.factorise(zero, zero, zero); },
-              ThrowsMessage<NumericsError>(HasSubstr("system failed")));
+              ThrowsMessage<NumericsError>(HasSubstr("unknowns failed")));
   solver.factorise(of.P, of.Q, of.R);
   Field wrong = other.r;
   EXPECT_THAT([&] { solver.solve(wrong, w); }, ThrowsMessage<InputError>(HasSubstr("expected")));
