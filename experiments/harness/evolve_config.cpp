@@ -366,7 +366,8 @@ std::string evolve_config_help() {
    "problem": "growing_sphere"                coupled_diffusion: nick18 7.3, from the unit sphere (default)
             | "ellipsoid"                     cahn_hilliard: exp(-6t) x1 x2 on an ellipsoid that starts as the unit sphere
                                               (default)
-            | "phase_separation"              cahn_hilliard: a disturbed mixture on any surface, at rest
+            | "phase_separation"              cahn_hilliard: a disturbed mixture on any surface, at rest; implicit, for
+                                              steps of any size
             | "tumour_growth",                activator and substrate (Schnakenberg) on any surface, from a disturbed
                                               steady state
    "parameters": {"alpha": 1, "beta": 1}      growing_sphere

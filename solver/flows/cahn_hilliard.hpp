@@ -135,6 +135,7 @@ Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u,
 struct DoubleWell {
   Pack f(double, const PointData<1>&) const { return Pack{}; }
   Pack g(double, const PointData<1>& p) const { return p.u[0] * (p.u[0] * p.u[0] - 1.0); }
+  Pack dg(double, const PointData<1>& p) const { return 3.0 * p.u[0] * p.u[0] - 1.0; }
   void b(double, const Field&, Field&) const {}
 };
 
