@@ -229,6 +229,60 @@ TEST(CahnHilliard, KeepsTheMassAndLosesEnergyOnAStationarySurface) {
   EXPECT_LT(energy.back(), 0.95 * energy.front());
 }
 
+/// The manufactured solution with an f(u, grad u) that b takes back.
+struct WithReaction : ManufacturedCahnHilliard::Problem {
+  explicit WithReaction(const ManufacturedCahnHilliard& solution)
+      : ManufacturedCahnHilliard::Problem(solution.problem()) {}
+
+  Pack f(double, const PointData<1>& p) const { return 20.0 * (p.u[0] + dot(p.grad[0], p.grad[0])); }
+  void b(double t, const Field& x, Field& nodal) const {
+    Problem::b(t, x, nodal);
+    for (int j = 0; j < x.rows(); ++j) {
+      const Vec3 y = x.row(j);
+      nodal(j, 0) -= 20 * (exact->u(y, t) + exact->gradient_of_u(y, t).squaredNorm());
+    }
+  }
+};
+
+/// The largest nodal error of u at t = 0.1, from interpolated starting values.
+template <class Problem>
+double manufactured_error(const Mesh& mesh, const ManufacturedCahnHilliard& exact, const Problem& problem,
+                          int q) {
+  const double tau = 0.0025;
+  const SurfaceSpace space(mesh);
+  MovingNodes nodes(moving.velocity(), mesh.nodes, tau);
+  const NodalMotion motion = [&](double t) -> const Field& { return nodes.at(t); };
+  CahnHilliard flow(space, problem, motion, epsilon);
+  const std::function<State(double)> starts = [&](double t) {
+    return exact_cahn_hilliard_state(space, exact, nodes.at(t), t, StartValues::interpolation);
+  };
+  const State end = last_state(flow, {q, tau, 40, {}}, starts(0), starts);
+  return (end.u - starts(end.t).u).cwiseAbs().maxCoeff();
+}
+
+TEST(CahnHilliard, TakesAnFOfUAndItsGradient) {
+  const ManufacturedCahnHilliard exact(moving, epsilon);
+  const WithReaction problem(exact);
+  const double coarse = manufactured_error(sphere_mesh(1, 1, 2), exact, problem, 2),
+               fine = manufactured_error(sphere_mesh(1, 1, 3), exact, problem, 2);
+  EXPECT_GT(order(coarse, fine), 1.8);
+  struct WithoutF : WithReaction {
+    using WithReaction::WithReaction;
+    Pack f(double, const PointData<1>&) const { return Pack{}; }
+  };
+  EXPECT_GT(manufactured_error(sphere_mesh(1, 1, 3), exact, WithoutF(exact), 2), 10 * fine);
+}
+
+TEST(CahnHilliard, IsTheMoreAccurateTheHigherTheDegree) {
+  const ManufacturedCahnHilliard exact(moving, epsilon);
+  double previous = 1;
+  for (const int degree : {1, 2, 3, 4}) {
+    const double error = manufactured_error(sphere_mesh(1, degree, 1), exact, exact.problem(), 4);
+    EXPECT_LT(error, previous / 3) << "degree " << degree;
+    previous = error;
+  }
+}
+
 /// The manufactured solution on nodes that are not material points: a linear image of the sphere's. The
 /// ellipsoid moves so far that the difference shows.
 struct StretchedNodes {
