@@ -105,7 +105,7 @@ build-stems: configure
 
 test:
 	@ctest --test-dir build --output-on-failure -j$(local_jobs) | { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
-	$(PYTHON) -m unittest discover -s plots -p 'test_*.py'
+	basename -a plots/test_*.py | xargs -P$(local_jobs) -I{} $(PYTHON) -m unittest discover -q -s plots -p {}
 
 format:
 	@clang-format -i $(sources)
