@@ -103,9 +103,7 @@ Field initial_values(const Field& x) {
 
 /// u from interpolation and w from the second equation, (3.12).
 CahnHilliardState initial_state(const SurfaceSpace& space, const Field& x) {
-  const Field u = initial_values(x);
-  const Field w = cahn_hilliard_w(space, x, u, epsilon, load_of_g(space, DoubleWell(), 0, x, u));
-  return cahn_hilliard_state(space, 0, x, u, w);
+  return cahn_hilliard_start(space, DoubleWell(), epsilon, 0, x, initial_values(x));
 }
 
 /// The numbers that claims are about, from the series of all steps. The energy rises with the surface at

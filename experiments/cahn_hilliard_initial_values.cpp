@@ -188,9 +188,8 @@ InitialValues initial_values(const SurfaceSpace& space, const Field& x, const Ru
   } else {
     for (int j = 0; j < x.rows(); ++j) u(j, 0) = u_0(x(j, 0), x(j, 1), x(j, 2));
   }
+  if (!run.with_theta()) return {cahn_hilliard_start(space, DoubleWell(), epsilon, 0, x, u), {}};
   const Field g = load_of_g(space, DoubleWell(), 0, x, u);
-  if (!run.with_theta())
-    return {cahn_hilliard_state(space, 0, x, u, cahn_hilliard_w(space, x, u, epsilon, g)), {}};
   const Field w = ritz_map(space, x, sphere, on_sphere(Potential{u_0, epsilon}));
   return {cahn_hilliard_state(space, 0, x, u, w), cahn_hilliard_theta(space, x, u, w, epsilon, g)};
 }

@@ -379,10 +379,9 @@ int main(int argc, char** argv) {
       "Spinodal decomposition on a sphere (PFHub benchmark 1d): energies over time until the state is "
       "steady, and "
       "snapshots of\n"
-      "the concentration. Level 0: 5,900 nodes, each further level twice as many; --steps k: tolerance 1e-3 "
-      "2^-k of "
-      "the steps. No\n"
-      "units.\n\n"
+      "the concentration. Level 1 has 5,900 nodes, whatever the degree, each level twice as many as the one "
+      "before; --steps k:\n"
+      "tolerance 2e-3 2^-k of the steps. No units.\n\n"
       "Example: cahn_hilliard_pfhub --degree 2 --levels 0-2 --end 300 --output table.json";
   experiment.add_options = [&](CLI::App& app) {
     add_names_option(

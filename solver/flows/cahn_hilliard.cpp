@@ -94,8 +94,7 @@ CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, d
                                     double disturbance, unsigned seed) {
   std::mt19937 engine(seed);
   const Field u = mean + disturbance * plane_waves(x, engine).array();
-  const Field w = cahn_hilliard_w(space, x, u, epsilon, load_of_g(space, DoubleWell(), 0, x, u));
-  return cahn_hilliard_state(space, 0, x, u, w);
+  return cahn_hilliard_start(space, DoubleWell(), epsilon, 0, x, u);
 }
 
 double ginzburg_landau_energy(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon) {

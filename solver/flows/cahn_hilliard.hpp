@@ -131,6 +131,14 @@ Field cahn_hilliard_theta(const SurfaceSpace& space, const Field& x, const Field
 Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon,
                       const Field& load_of_g);
 
+/// The state with given u, and w from the second equation with a Problem's g, without theta.
+template <class Problem>
+CahnHilliardState cahn_hilliard_start(const SurfaceSpace& space, const Problem& problem, double epsilon,
+                                      double t, const Field& x, const Field& u) {
+  return cahn_hilliard_state(space, t, x, u,
+                             cahn_hilliard_w(space, x, u, epsilon, load_of_g(space, problem, t, x, u)));
+}
+
 /// The double-well potential without f and b: g = F'(u) = u³ - u, F = (u² - 1)²/4.
 struct DoubleWell {
   Pack f(double, const PointData<1>&) const { return Pack{}; }

@@ -11,9 +11,7 @@ Field pfhub_initial_values(const Field& x) {
 }
 
 CahnHilliardState pfhub_state(const SurfaceSpace& space, const Field& x, const Field& c) {
-  const Field w =
-      cahn_hilliard_w(space, x, c, PfhubSphere::epsilon, load_of_g(space, PfhubSphere(), 0, x, c));
-  return cahn_hilliard_state(space, 0, x, c, w);
+  return cahn_hilliard_start(space, PfhubSphere(), PfhubSphere::epsilon, 0, x, c);
 }
 
 double pfhub_energy(const SurfaceSpace& space, const Field& x, const Field& c) {

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/harness/evolve_config.hpp"
+#include "solver/surfaces/named.hpp"
+
+namespace esfem {
+
+std::string evolve_config_help() {
+  return R"(CONFIG.json (keys without a default must be given; unknown keys are errors):
+  {"flow": "mean_curvature"                   kll19 (5.1): evolution equations for nu and H
+         | "dziuk"                            Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5
+         | "bgn"                              Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good
+         | "coupled_diffusion"                nick18 (2.19)-(2.21): moved by what diffuses on the surface
+         | "willmore" | "surface_diffusion"   kll21 (3.4)-(3.5): V = Delta H + Q; surface diffusion: Q = 0
+         | "cahn_hilliard",                   bk22 (8.3) on a surface that moves with a given velocity
+   "problem": "growing_sphere"                coupled_diffusion: nick18 7.3, from the unit sphere (default)
+            | "ellipsoid"                     cahn_hilliard: exp(-6t) x1 x2 on an ellipsoid that starts as the unit sphere
+                                              (default)
+            | "phase_separation"              cahn_hilliard: a disturbed mixture on any surface, at rest; implicit, for
+                                              steps of any size
+            | "tumour_growth",                activator and substrate (Schnakenberg) on any surface, from a disturbed
+                                              steady state
+   "parameters": {"alpha": 1, "beta": 1}      growing_sphere
+               | {"epsilon": 0.5}             ellipsoid
+               | {"epsilon": 0.5, "mean": 0, "disturbance": 0.1, "seed": 1},                   phase_separation
+               | {"alpha": 1, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30, "delta": 0.4,
+                  "disturbance": 0.01, "seed": 1},                                             tumour_growth
+   "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
+   "mesh": {"file": "a.msh"}                 .msh, .off, .obj, .ply, .stl; nodes are projected to the surface
+         | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
+         | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
+   "degree": 2,                               1..4
+   "bdf": 3,                                  1..5; bgn: 1
+   "tau": 0.05,                               step size (no default)
+   "steps": 0,                                end time = steps tau; 0 writes the initial surface
+   "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
+                "tolerance": 1e-3,            follow the solution; of u (mean_curvature, coupled_diffusion, willmore,
+                "first_step": 1e-6,           surface_diffusion, phase_separation) or x, root mean square
+                "largest_step": 0.01},        default: no bound
+   "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere), else substeps:16
+   "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
+   "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0},  mean_curvature
+            {"mass": "extrapolated" | "reassembled", "law": "regularised" | "dynamic",
+             "coupling": "additive" | "quotient" | "none"},   coupled_diffusion; coupling: growing_sphere
+            {"F": "extrapolated" | "implicit", "project": true, "theta": true, "relaxation": 0},  willmore, surface_diffusion;
+                                              theta: the correction (3.7), default false without "surface"; relaxation:
+                                              1/time, towards the geometry of the surface, times tau at most 0.2
+            {"theta": false, "initial": "interpolation" | "ritz"},  ellipsoid
+   "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
+              "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
+              "checkpoint": "run.checkpoint", the same command goes on from it when the run was stopped
+              "every": 10,                    at every 10th step (default 0: none of these)
+              "times": [0.1, 0.25]}}          and at the first step at or after each of these times
+Surfaces and their defaults:
+)" + named_surfaces_help() +
+         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u, or u1, u2;
+willmore, surface_diffusion: nu, H, V, z; cahn_hilliard: u, w) of the last step, one row a node
+in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
+(degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
+willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and
+energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x. Where
+the flow has no nu, max_H and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
+A run that meets a singularity writes what it has computed, says so, and ends with exit code 2.)";
+}
+
+}  // namespace esfem
