@@ -215,7 +215,7 @@ int main(int argc, char** argv) {
       "Example: cahn_hilliard_energy --levels 4 --bdf 3 --end-time 0.2 --output energy.json";
   experiment.add_options = [&](CLI::App& app) {
     app.add_option("--end-time", own.end_time, "t at the end of each run")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->group(method_group);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };

@@ -347,7 +347,7 @@ int main(int argc, char** argv) {
     add_names_option(app, "--constants", known_constants,
                      "of the initial u: unit: max |u| = 1 | printed: 225/56693", own.constants);
     app.add_option("--epsilon", own.epsilon, "of the equation")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str()
         ->group(method_group);
   };

@@ -390,7 +390,7 @@ int main(int argc, char** argv) {
         "the published run, to t = 30.263",
         own.steppings);
     app.add_option("--end", own.end_time, "end time of adaptive steps (default: 1.5e5)")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->group(method_group);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };

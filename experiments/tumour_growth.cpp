@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
       "Example: tumour_growth --levels 0 --steps 1 --output tumour.json";
   experiment.add_options = [&](CLI::App& app) {
     app.add_option("--gamma", gamma, "size of the tumour: factor of the kinetics")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->capture_default_str()
         ->group(method_group);
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/harness/method_options.hpp"
 
+#include <cmath>
+
 namespace esfem {
 
 const char* const method_group = "Method (not given: as in the preset)";
@@ -12,6 +14,15 @@ void add_names_option(CLI::App& app, const std::string& option, const std::vecto
       ->delimiter(',')
       ->type_name("LIST")
       ->group(method_group);
+}
+
+CLI::Validator positive_number() {
+  const auto complaint = [](const std::string& text) -> std::string {
+    double value = 0;
+    if (CLI::detail::lexical_cast(text, value) && value > 0 && std::isfinite(value)) return "";
+    return "found " + text + ", expected a positive number";
+  };
+  return {complaint, "POSITIVE", "positive number"};
 }
 
 void add_quadrature_option(CLI::App& app, std::string& rule) {

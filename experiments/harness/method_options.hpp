@@ -17,6 +17,9 @@ extern const char* const method_group;
 void add_names_option(CLI::App& app, const std::string& option, const std::vector<std::string>& known,
                       const std::string& help, std::vector<std::string>& names);
 
+/// The check of an option that takes a positive number (CLI11's own prints 300 digits).
+CLI::Validator positive_number();
+
 /// Adds --quadrature.
 void add_quadrature_option(CLI::App& app, std::string& rule);
 

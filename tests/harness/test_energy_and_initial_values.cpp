@@ -55,6 +55,8 @@ TEST_F(Programs, RefuseStartingValuesThatNobodyKnows) {
   EXPECT_EQ(exit_code("cahn_hilliard_initial_values --start exact"), exit_usage);
   EXPECT_EQ(exit_code("cahn_hilliard_energy --levels 8"), exit_usage);
   EXPECT_EQ(exit_code("cahn_hilliard_initial_values --levels 4"), exit_usage);
+  EXPECT_EQ(exit_code("cahn_hilliard_energy --end-time 0"), exit_usage);
+  EXPECT_EQ(exit_code("cahn_hilliard_initial_values --epsilon -1"), exit_usage);
 }
 
 TEST_F(Programs, InitialValuesDifferByWhatTheSchemesSay) {
