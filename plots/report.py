@@ -3,7 +3,7 @@
 
 Usage: python3 plots/report.py VERDICTS FIGURES OUTPUT [--reference FOLDER] [--expect tables|everything] [--without-pdf]
 Reads VERDICTS (check_orders --output), the tables that it names, and the PNGs of FIGURES; writes OUTPUT/index.html, which
-needs no other file, and OUTPUT/report.pdf.
+needs no other file, OUTPUT/report.pdf, and all claims and orders as OUTPUT/{claims,orders}.{csv,tex}.
 """
 import argparse
 import datetime
@@ -13,6 +13,7 @@ import sys
 
 from report_content import BEYOND, PAPERS
 from report_data import SEVERITY, counts, place, read_results, verdict
+from report_export import exports
 from report_html import number, picture, table, tag, text
 from report_tables import fits_table, provenance_table, runs_table
 from table import TableError
@@ -219,6 +220,8 @@ def main():
         page = report_html(results, arguments.figures)
         os.makedirs(arguments.output, exist_ok=True)
         write(os.path.join(arguments.output, "index.html"), page.encode())
+        for name, data in exports(results).items():
+            write(os.path.join(arguments.output, name), data.encode())
         if not arguments.without_pdf:
             import weasyprint  # slow to load
             write(os.path.join(arguments.output, "report.pdf"), weasyprint.HTML(string=page).write_pdf())

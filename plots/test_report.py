@@ -16,6 +16,7 @@ import gallery
 import report
 import style
 from report_data import Statement, grouped, place, read_results, verdict
+from report_export import exports
 from report_html import small_png, text
 from table import TableError
 from testing import FOLDER, synthetic_table
@@ -140,6 +141,19 @@ class Report(unittest.TestCase):
         placed = place(self.results)
         self.assertEqual({key: len(statements) for key, statements in placed.items()},
                          {("kll19", "13.1"): 1, ("kll19", ""): 1, ("kll19", "mcf_sphere"): 1, ("kll19", "13.2"): 1})
+
+    def test_exports(self):
+        self.page(claim("a", remark="50%"), claim("b", statement="|nu_h| >= 1 & ²"))
+        files = exports(self.results)
+        self.assertEqual(files["claims.csv"].count("\n"), 3)
+        self.assertIn("mcf_sphere,a,kll19,", files["claims.csv"])
+        self.assertIn(r"$|$nu\_h$|$ $>$= 1 \& $^2$", files["claims.tex"])
+        self.assertIn("mcf_sphere,flow=mean_curvature,x,lifted_H1,tau,2.900,2.800,3.000", files["orders.csv"])
+        for name, text_ in files.items():
+            if name.endswith("tex"):
+                widths = {line.replace(r"\&", "").count("&") for line in text_.splitlines() if line.endswith(r"\\")
+                          and not line.startswith(r"\caption")}
+                self.assertEqual(len(widths), 1, name)
 
     def test_unmet_claims_are_seen_first(self):
         _, words = self.page(claim("a"), claim("b", met=False, reason="Convergence order not achieved"))
