@@ -145,7 +145,9 @@ def exceptions_table(results):
     """Published statements that do not simply hold, paper by paper, worst first."""
     chosen = [statement for statement in results.statements
               if statement.is_published and statement.verdict != "reproduced"]
-    chosen.sort(key=lambda statement: (statement.source["paper"], SEVERITY.index(statement.verdict)))
+    order = [paper.key for paper in PAPERS]
+    chosen.sort(key=lambda statement: (order.index(statement.source["paper"]) if statement.source["paper"] in order
+                                       else len(order), SEVERITY.index(statement.verdict)))
     rows = []
     for statement in chosen:
         worst = min(statement.claims, key=lambda claim: SEVERITY.index(verdict(claim)))
