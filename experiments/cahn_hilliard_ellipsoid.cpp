@@ -104,7 +104,7 @@ std::vector<Run> preset_runs(const std::string& preset) {
              {"interpolation", 1, {3}, range(0, 3), {4, 5}},
              {"order", 1, {1}, {1}, {5, 6, 7}},
              {"order", 1, {2, 3, 4, 5}, {1}, {3, 4, 5}},
-             {"derivative", 1, {3}, range(1, 3), {4}},
+             {"derivative", 1, {3}, range(1, 3), {3}},
              {"printed", 1, {1}, {1}, {3, 4, 5}}};
   } else {
     grids = {{"ritz_theta", 1, {1}, range(1, 3), range(3, 5)},
