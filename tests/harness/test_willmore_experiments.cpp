@@ -74,6 +74,15 @@ TEST_F(StationarySphere, HasTheErrorOfItsEnergy) {
   EXPECT_DOUBLE_EQ(row.errors.at("energy").at("excess"), std::abs(row.values.at("willmore_excess")));
 }
 
+// H and with it V do not depend on nu_h then.
+TEST_F(StationarySphere, StaysUnderSurfaceDiffusionWhileTheNormalIsOff) {
+  setting.variant.law = WillmoreFlow::Variant::surface_diffusion;
+  const Errors errors = run().errors;
+  for (const char* quantity : {"x", "H", "v", "V"})
+    EXPECT_LT(errors.at(quantity).at("nodal_H1"), 1e-11) << quantity;
+  for (const char* quantity : {"nu", "z"}) EXPECT_GT(errors.at(quantity).at("nodal_H1"), 1e-6) << quantity;
+}
+
 TEST_F(StationarySphere, IsObservedInEachStep) {
   std::vector<double> times;
   const Row row = run([&](const WillmoreFlow::State& state) { times.push_back(state.t); });
