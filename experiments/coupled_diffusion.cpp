@@ -45,8 +45,8 @@ const HalvedSteps time_steps{1, 0.1};
 const int reference_k = 7;  ///< step size of the solution that the orders of BDF 1 to 5 are measured against
 
 /// The kinds of runs, as --runs names them and as rows are labelled.
-const std::vector<std::string> known_runs = {"convergence", "extrapolation", "quotient", "none",
-                                             "difference",  "cost",          "dynamic",  "order"};
+const std::vector<std::string> known_runs = {"convergence", "extrapolation", "quotient", "none", "difference",
+                                             "cost",        "growth",        "dynamic",  "order"};
 
 /// One run of the grid.
 struct Run {
@@ -92,6 +92,7 @@ std::vector<Run> preset_runs(const std::string& preset) {
   add_runs("none", {3}, {0, 1}, {3}, runs);
   add_runs("extrapolation", {3}, {0}, {1, 2, 3, 4}, runs);
   add_runs("cost", {3}, {0}, {2}, runs);
+  add_runs("growth", {3}, {0}, {3}, runs);
   add_runs("difference", {2, 4}, {0, 1}, {1, 2, 3, 4}, runs);
   // Where each order shows: small errors end at round-off times the growth of f.
   add_runs("order", {1, 3}, {0}, {3, 4, 5}, runs);
@@ -253,6 +254,28 @@ void run_cost(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
   row.values["seconds_ratio"] = ratios[ratios.size() / 2];
 }
 
+/// How much a constant error of u grows until the end, relative to u: by the load f, which the manufactured
+/// solution needs. exp(t²) undoes the decay of u.
+void run_growth(const GrowingSphereRuns& runs, TimeGrid grid, Row& row) {
+  const double excess = 1e-5;
+  grid.start = parse_start("substeps:16");
+  const CoupledDiffusionParameters parameters;
+  const auto mean_u_from = [&](double added) {
+    CoupledDiffusion<GrowingSphereProblem> flow(
+        runs.space,
+        GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised, GrowingSphereProblem::none),
+        parameters, {});
+    const State exact = runs.exact_state(0);
+    State end;
+    integrate(flow, grid, coupled_diffusion_state(runs.space, 0, exact.x, exact.v, exact.u.array() + added),
+              {}, [&](int, const State& state) { end = state; });
+    return end.u.mean();
+  };
+  const double end_time = time_steps.end_time;
+  row.values["growth_of_constants"] =
+      (mean_u_from(excess) - mean_u_from(0)) / excess * std::exp(end_time * end_time);
+}
+
 /// Errors against the solution of the same discretisation in space, by BDF5 and small steps. It gives the
 /// starting values, too: exact ones are off it by the error in space, and how far is a matter of tau.
 void run_order(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
@@ -304,6 +327,8 @@ Row run_cell(const Setting& setting, const Run& run, Row row) {
       run_difference(runs, grid, row);
     } else if (run.kind == "cost") {
       run_cost(runs, grid, row);
+    } else if (run.kind == "growth") {
+      run_growth(runs, grid, row);
     } else if (run.kind == "order") {
       run_order(runs, grid, row);
     } else {
@@ -327,6 +352,7 @@ double estimated_cost(const Setting& setting, const Run& run) {
   double steps = time_steps.count(run.k);
   if (run.kind == "difference") steps *= 2.2;
   if (run.kind == "cost") steps *= 11;
+  if (run.kind == "growth") steps *= 3;
   if (run.kind == "order") steps += time_steps.count(reference_k);
   return 0.1 + vertices * 2e-4 + nodes * steps * 2.5e-6;
 }
@@ -375,7 +401,8 @@ int main(int argc, char** argv) {
         app, "--runs", known_runs,
         "convergence: (2.19) with g coupled additively | quotient: as printed | none: not coupled "
         "| extrapolation: as (2.18) prints it "
-        "| difference: (7.2) minus (2.19) | cost: of (7.2) | dynamic: dynamic velocity law | order: errors "
+        "| difference: (7.2) minus (2.19) | cost: of (7.2) | growth: of an error in u | dynamic: dynamic "
+        "velocity law | order: errors "
         "against small steps",
         own.runs);
     add_quadrature_option(app, own.quadrature);
