@@ -13,12 +13,15 @@
 // The sphere of radius R_0 = 2 shrinks by v = -H nu on [0, 0.6], R(t) = sqrt(R_0² - 4t). The discretisation
 // is (5.1): quadratic evolving surface finite elements and BDF3, exact starting values, tau = 0.2 2^-k and h
 // near 0.5 2^(-j/2). Beside it, in the same table, runs Dziuk's scheme (3.6), with nu and H from kappa = M^-1
-// A x.
+// A x; and, one or a few cells each, what the paper says or assumes of starting values and of the
+// price of a step, Dziuk's scheme with BDF4, and the growth of an error in |nu_h|.
 //
 // Expected orders (Theorem 6.1): tau³ + h² in L^infinity(H1) for x, v, nu, H. On the sphere all four
 // superconverge in space (order 3 in H1, 4 for H), and nu shows no order in time, because it is constant
 // along trajectories. x and H reach order 3 in tau slowly: slopes of x between neighbouring step sizes
 // are 2.3, 2.6, 2.75 from tau = 0.1 down.
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "experiments/harness/experiment.hpp"
@@ -39,12 +42,21 @@ using namespace esfem;
 const double initial_radius = 2, largest_h = 0.5;
 const HalvedSteps time_steps{0.6, 0.2};
 
+/// One run of the grid, or beside it: there `flow` says what is different.
+struct Run {
+  std::string flow;
+  int bdf;
+  Start start;
+  int level, k;
+};
+
 /// What the command line says, with the preset's values where it says nothing.
 struct Setting {
   int degree, bdf;
   std::vector<int> levels, dziuk_levels, steps;
   Start start;
   std::vector<std::string> meshes, flows;
+  std::vector<Run> beside;
   Quadrature rule;
 };
 
@@ -55,6 +67,22 @@ struct OwnOptions {
   std::string quadrature;
   std::vector<std::string> flows = known_flows;
 };
+
+/// What claims are about beside the grid, all on coarse meshes.
+std::vector<Run> runs_beside_the_grid(bool paper) {
+  const Start exact, cascade = parse_start("cascade"), substeps = parse_start("substeps:16");
+  std::vector<Run> runs;
+  for (int k : {1, 2, 3}) runs.push_back({"cascade_bdf3", 3, cascade, 0, k});
+  runs.push_back({"substeps_bdf3", 3, substeps, 0, 2});
+  runs.push_back({"dziuk_bdf4", 4, exact, 0, 4});
+  runs.push_back({"disturbed_normal", 2, substeps, 0, 3});
+  runs.push_back({"cost", 3, exact, 0, 2});
+  if (!paper) return runs;
+  for (int k : {1, 2, 3}) runs.push_back({"cascade_bdf5", 5, cascade, 0, k});
+  runs.push_back({"substeps_bdf3", 3, substeps, 0, 3});
+  runs.push_back({"dziuk_bdf4", 4, exact, 0, 5});
+  return runs;
+}
 
 Setting resolve(const Options& options, const OwnOptions& own) {
   const bool paper = options.preset == "paper";
@@ -70,6 +98,9 @@ Setting resolve(const Options& options, const OwnOptions& own) {
   setting.steps = options.steps.value_or(paper ? range(0, 7) : range(2, 6));
   setting.start = options.start.value_or(Start{});
   setting.flows = own.flows;
+  const bool as_in_the_preset = !options.degree && !options.bdf && !options.levels && !options.steps &&
+                                !options.start && options.meshes.empty() && own.flows == known_flows;
+  if (as_in_the_preset) setting.beside = runs_beside_the_grid(paper);
   return setting;
 }
 
@@ -84,17 +115,95 @@ Field columns(const DziukFlow::State& state, DiscreteCurvature& curvature) {
   return all;
 }
 
-/// Runs the flow and records the errors of each step.
+/// Runs the flow, records the errors of each step and shows its end.
 template <class Flow, class ExactState>
 void run_flow(Flow flow, const SurfaceSpace& space, const TimeGrid& grid, const ExactState& exact_state,
-              ErrorRecorder& errors) {
+              ErrorRecorder& errors, const std::function<void(const typename Flow::State&)>& at_end) {
   using State = typename Flow::State;
   DiscreteCurvature curvature(space);
   integrate(flow, grid, exact_state(0.0), std::function<State(double)>(exact_state),
-            [&](int, const State& state) { errors.record(state.t, columns(state, curvature)); });
+            [&](int n, const State& state) {
+              errors.record(state.t, columns(state, curvature));
+              if (n == grid.steps) at_end(state);
+            });
 }
 
-Row run(const Setting& setting, const std::string& flow, Row row) {
+/// The last state of a run of (5.1) from given initial values.
+MeanCurvatureFlow::State end_of(const SurfaceSpace& space, const TimeGrid& grid,
+                                const MeanCurvatureFlow::State& initial) {
+  MeanCurvatureFlow flow(space, {});
+  MeanCurvatureFlow::State end;
+  integrate(flow, grid, initial, {}, [&](int, const MeanCurvatureFlow::State& state) { end = state; });
+  return end;
+}
+
+/// How much an error in the length of nu_h grows until the end: |nu_h| of a run whose initial normals are a
+/// little too long, compared with a run where they are not.
+double growth_of_length(const SurfaceSpace& space, const TimeGrid& grid,
+                        const MeanCurvatureFlow::State& initial) {
+  const double excess = 1e-4;
+  MeanCurvatureFlow::State disturbed = initial;
+  disturbed.u.leftCols(3) *= 1 + excess;
+  const auto mean_length = [](const MeanCurvatureFlow::State& state) {
+    return state.u.leftCols(3).rowwise().norm().mean();
+  };
+  return (mean_length(end_of(space, grid, disturbed)) - mean_length(end_of(space, grid, initial))) / excess;
+}
+
+/// How many times as long as one of Dziuk's scheme a run of (5.1) takes: the median of pairs of runs.
+double cost_ratio(const SurfaceSpace& space, const TimeGrid& grid, const ExactEvolution& exact,
+                  const Field& x0) {
+  const auto seconds = [&](auto flow, const auto& exact_state) {
+    using State = decltype(exact_state(0.0));
+    const auto begin = std::chrono::steady_clock::now();
+    integrate(flow, grid, exact_state(0.0), std::function<State(double)>(exact_state),
+              [](int, const State&) {});
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  std::vector<double> ratios;
+  for (int pair = 0; pair < 5; ++pair) {
+    const double dziuk = seconds(DziukFlow(space), [&](double t) { return exact_dziuk_state(exact, x0, t); });
+    const double kll = seconds(MeanCurvatureFlow(space, {}),
+                               [&](double t) { return exact_mean_curvature_state(exact, x0, t); });
+    ratios.push_back(kll / dziuk);
+  }
+  std::sort(ratios.begin(), ratios.end());
+  return ratios[ratios.size() / 2];
+}
+
+/// The largest distance in a node between nu_h and the normal of Gamma_h[x].
+double distance_of_normals(const SurfaceSpace& space, const MeanCurvatureFlow::State& state) {
+  DiscreteCurvature curvature(space);
+  curvature.compute(state.x);
+  return (state.u.leftCols(3) - curvature.nu()).rowwise().norm().maxCoeff();
+}
+
+bool starts_with(const std::string& text, const std::string& beginning) {
+  return text.compare(0, beginning.size(), beginning) == 0;
+}
+
+/// A run whose errors are measured at each step.
+void run_with_errors(const Run& run, const SurfaceSpace& space, const TimeGrid& grid, const Field& x0,
+                     const ExactEvolution& exact, Row& row) {
+  ErrorRecorder errors(space, exact, x0);
+  if (starts_with(run.flow, "dziuk")) {
+    if (run.flow == "dziuk") warn(dziuk_warning(grid.order));
+    run_flow(
+        DziukFlow(space), space, grid, [&](double t) { return exact_dziuk_state(exact, x0, t); }, errors,
+        [](const DziukFlow::State&) {});
+  } else {
+    run_flow(
+        MeanCurvatureFlow(space, {}), space, grid,
+        [&](double t) { return exact_mean_curvature_state(exact, x0, t); }, errors,
+        [&](const MeanCurvatureFlow::State& end) {
+          row.values["distance_of_normals"] = distance_of_normals(space, end);
+        });
+  }
+  row.errors = errors.maxima();
+  row.series = errors.series();
+}
+
+Row run_cell(const Setting& setting, const Run& run, Row row) {
   // 1. The initial surface and the finite element space on it.
   const Surface surface = sphere(initial_radius);
   const auto generate = [&] { return generate_mesh(surface, edge_length(largest_h, row.level)); };
@@ -104,22 +213,17 @@ Row run(const Setting& setting, const std::string& flow, Row row) {
 
   // 2. The exact solution: starting values and what the errors are measured against.
   const ExactEvolution exact = shrinking_sphere(initial_radius);
-  ErrorRecorder errors(space, exact, mesh.nodes);
 
-  // 3. The time steps, with the errors of each.
-  const TimeGrid grid{setting.bdf, row.tau, row.steps, setting.start};
-  if (flow == "dziuk") {
-    warn(dziuk_warning(grid.order));
-    const auto state = [&](double t) { return exact_dziuk_state(exact, mesh.nodes, t); };
-    run_flow(DziukFlow(space), space, grid, state, errors);
+  // 3. The time steps, and what is measured of them.
+  const TimeGrid grid{run.bdf, row.tau, row.steps, run.start};
+  if (run.flow == "disturbed_normal") {
+    row.values["growth_of_length"] =
+        growth_of_length(space, grid, exact_mean_curvature_state(exact, mesh.nodes, 0));
+  } else if (run.flow == "cost") {
+    row.values["seconds_ratio"] = cost_ratio(space, grid, exact, mesh.nodes);
   } else {
-    const auto state = [&](double t) { return exact_mean_curvature_state(exact, mesh.nodes, t); };
-    run_flow(MeanCurvatureFlow(space, {}), space, grid, state, errors);
+    run_with_errors(run, space, grid, mesh.nodes, exact, row);
   }
-
-  // 4. The row of the table.
-  row.errors = errors.maxima();
-  row.series = errors.series();
   return row;
 }
 
@@ -131,17 +235,24 @@ double estimated_cost(const Setting& setting, int level, int k) {
   return vertices * 2e-4 + nodes * time_steps.count(k) * 9e-6;
 }
 
+std::string cell_name(const Run& run) {
+  const std::string prefix = run.flow == "mean_curvature" ? "" : run.flow + "_";
+  return prefix + format("h%d_tau%d", run.level, run.k);
+}
+
 std::vector<Cell> cells(const Setting& setting) {
-  std::vector<Cell> list;
+  std::vector<Run> runs;
   for (const std::string& flow : setting.flows) {
-    const std::string prefix = flow == "dziuk" ? "dziuk_" : "";
     for (int level : flow == "dziuk" ? setting.dziuk_levels : setting.levels) {
-      for (int k : setting.steps) {
-        list.push_back({format("%sh%d_tau%d", prefix.c_str(), level, k), estimated_cost(setting, level, k),
-                        [=](const Row& row, const std::string&) { return run(setting, flow, row); },
-                        planned_row(level, time_steps, k, {{"flow", flow}})});
-      }
+      for (int k : setting.steps) runs.push_back({flow, setting.bdf, setting.start, level, k});
     }
+  }
+  runs.insert(runs.end(), setting.beside.begin(), setting.beside.end());
+  std::vector<Cell> list;
+  for (const Run& run : runs) {
+    list.push_back({cell_name(run), estimated_cost(setting, run.level, run.k),
+                    [=](const Row& row, const std::string&) { return run_cell(setting, run, row); },
+                    planned_row(run.level, time_steps, run.k, {{"flow", run.flow}})});
   }
   return list;
 }

@@ -29,7 +29,8 @@ ZOOM = 0.07  # where the blow-up begins
 
 LABELS = {"dziuk": "Dziuk", "kll": "(5.1)", "kll_normalised": r"(5.1), $\nu_h$ normalised",
           "kll_alpha1": r"(5.1), $\alpha = 1$", "kll_alpha10": r"(5.1), $\alpha = 10$",
-          "kll_alpha100": r"(5.1), $\alpha = 100$", "bgn": "BGN", "bgn_p1": "BGN, linear elements"}
+          "kll_alpha100": r"(5.1), $\alpha = 100$", "bgn": "BGN", "bgn_p1": "BGN, linear elements",
+          "kll_interpolated": "(5.1), $v_h$ interpolated"}
 LINES = {"dziuk": {"color": style.VERMILLION, "linestyle": style.DASHES["dashed"]},
          "kll": {"color": style.BLUE, "linestyle": style.DASHES["solid"], "zorder": 1.9},  # below the others' dashes
          "kll_normalised": {"color": style.GREEN, "linestyle": style.DASHES["dash-dot"]},
@@ -37,7 +38,8 @@ LINES = {"dziuk": {"color": style.VERMILLION, "linestyle": style.DASHES["dashed"
          "kll_alpha10": {"color": style.ORANGE, "linestyle": style.DASHES["dash-dot-dot"]},
          "kll_alpha100": {"color": "#7A6A00", "linestyle": style.DASHES["long"]},
          "bgn": {"color": style.PURPLE, "linestyle": style.DASHES["dotted"]},
-         "bgn_p1": {"color": "#8F4B73", "linestyle": style.DASHES["sparse"]}}
+         "bgn_p1": {"color": "#8F4B73", "linestyle": style.DASHES["sparse"]},
+         "kll_interpolated": {"color": "#555555", "linestyle": (0, (3, 2.5))}}
 for line in LINES.values():
     line["linewidth"] = 1.15
 REFERENCE_LINE = {"color": "black", "linewidth": 0.7}

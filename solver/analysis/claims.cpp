@@ -68,12 +68,12 @@ void read_bounds_of(Claim::Kind kind, const JsonReader& reader, Claim& claim) {
 
 void read_finding(const JsonReader& reader, Claim& claim) {
   static const std::set<std::string> known = {"reproduced", "reproduced, but", "not reproduced", "corrected"};
+  claim.remark = reader.has("remark") ? reader.text("remark") : "";
   if (!reader.has("finding")) return;
   claim.finding = reader.text("finding");
   if (known.count(claim.finding) == 0)
     throw InputError(reader.where() + ": finding '" + claim.finding +
                      "': expected reproduced; reproduced, but; not reproduced; or corrected");
-  claim.remark = reader.has("remark") ? reader.text("remark") : "";
   if (claim.remark.empty() && claim.finding != "reproduced")
     throw InputError(reader.where() + ": finding '" + claim.finding + "' needs a 'remark' that says why");
 }

@@ -36,7 +36,7 @@ struct Claim {
   std::set<std::string> presets;  ///< where it is checked; empty: everywhere
   /// What became of the paper's statement, where the bounds are this project's finding: "reproduced",
   /// "reproduced, but", "not reproduced" or "corrected", with the reason; empty: it holds as stated when the
-  /// claim is met.
+  /// claim is met. A remark may stand alone.
   std::string finding, remark;
 };
 

@@ -126,6 +126,7 @@ std::vector<Block> blocks(const Table& table, Direction direction) {
   const Direction other = direction == Direction::tau ? Direction::h : Direction::tau;
   std::vector<Block> result;
   for (const Row& row : table.rows) {
+    if (row.status == "ok" && row.errors.empty()) continue;  // of this row there are values alone
     const auto same = std::find_if(result.begin(), result.end(), [&](const Block& block) {
       const Row& first = *block[0];
       const bool same_mesh =

@@ -110,6 +110,7 @@ TEST(Claims, SayWhatBecameOfAStatement) {
   const Claim claim = read({{"finding", "reproduced, but"}, {"remark", "the start does it"}});
   EXPECT_EQ(claim.finding, "reproduced, but");
   EXPECT_EQ(claim.remark, "the start does it");
+  EXPECT_EQ(read({{"remark", "it may do better"}}).remark, "it may do better");
   EXPECT_THROW(read({{"finding", "not reproduced"}}), InputError) << "without a reason";
   EXPECT_THROW(read({{"finding", "perhaps"}, {"remark", "?"}}), InputError);
   EXPECT_THROW(read({{"norm", "nodal_L2"}}), InputError) << "a value has no norm";

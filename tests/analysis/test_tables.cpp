@@ -93,6 +93,17 @@ TEST(Latex, VariantsAreBlocksOfTheirOwn) {
               HasSubstr("$N = 100$, variant=dziuk} \\\\\n$0.025$ & $1.000\\cdot10^{0}$ & -- \\\\\n"));
 }
 
+TEST(Latex, RowsWithoutErrorsAreNoBlocks) {
+  Table table = sample_table();
+  const std::string before = to_latex(table);
+  table.rows.push_back(row("d", 1, 0.5, 0.1, 0));
+  table.rows.back().errors.clear();
+  table.rows.back().more["flow"] = "cost";
+  EXPECT_EQ(to_latex(table), before);
+  table.rows.back().status = "failed: why";
+  EXPECT_THAT(to_latex(table), testing::HasSubstr("failed: why"));
+}
+
 TEST(Latex, OnlyOfWhatIsThere) {
   EXPECT_THAT(to_latex(Table{}), Not(HasSubstr("tabular")));
 }

@@ -113,6 +113,34 @@ double growth_of_tangential_motion(const Mesh& mesh, int q, double tau, int step
   return std::pow(difference(steps) / difference(steps - 10), 0.1);
 }
 
+// kll19 Remark 7.1: d/dt of M(x)v + A(x)x = 0 has the form int |grad v|² + grad x : (D v) grad v, the second
+// term of which is nowhere positive, and which is not positive where grad v has nu in its null-space and
+// eigenvalues of different sign. For v = phi nu these are -phi² (kappa_1 - kappa_2)² and, in all, |grad phi|²
+// + 2 K phi²: with phi large where K < 0, on the inside of a torus, the form is negative.
+TEST(DziukFlow, ItsDifferentiatedFormIsNotElliptic) {
+  const double major = 2, minor = 1, c = 0.5, pi = std::acos(-1.0), epsilon = 1e-4;
+  const Mesh mesh = torus_mesh(major, minor, 2, 60, 30);
+  const SurfaceSpace space(mesh);
+  Field v(mesh.nodes.rows(), 3);
+  for (Eigen::Index j = 0; j < v.rows(); ++j) {
+    const Vec3 x = mesh.nodes.row(j), nu = torus(major, minor).normal(x);
+    v.row(j) = (1 - c * (x.head<2>().norm() - major) / minor) * nu;
+  }
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  const auto stiffness_of = [&](const Field& on, const Field& u) {
+    space.assemble(on, M, A);
+    Field product(u.rows(), 3);
+    A.multiply(u, product);
+    return product.cwiseProduct(v).sum();
+  };
+  const double second = (stiffness_of(mesh.nodes + epsilon * v, mesh.nodes) -
+                         stiffness_of(mesh.nodes - epsilon * v, mesh.nodes)) /
+                        (2 * epsilon);
+  const double all = stiffness_of(mesh.nodes, v) + second;
+  EXPECT_LT(second, 0);
+  EXPECT_NEAR(all, 2 * pi * pi * (c * c * major / minor - 4 * c), 0.1);
+}
+
 // Tangential motion does not change the surface, so that A(x) e + A'(x)[e] x is about 0 for a tangential
 // displacement e, and the step with the extrapolated x~ acts on a mode with eigenvalue lambda of M^-1 A like
 //   1/tau delta(zeta) e + lambda (1 - zeta)^q e = 0.

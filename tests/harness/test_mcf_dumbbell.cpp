@@ -44,6 +44,15 @@ TEST(McfDumbbell, KeepsWhatItHasComputedUntilTheSingularity) {
       EXPECT_EQ(row.series.count(name), 1u) << name;
     EXPECT_EQ(row.series.count("min_nu"), row.cell.compare(0, 3, "kll") == 0) << "normals of its own";
 
+    // The nodes come close to each other beside the widest circles, but for BGN's scheme.
+    EXPECT_GT(row.series.at("smallest_elements").front(), 0.5);
+    if (row.cell.compare(0, 3, "bgn") == 0) {
+      EXPECT_GT(row.values.at("smallest_elements_at_0.06"), 0.75);
+    } else {
+      EXPECT_LT(row.values.at("smallest_elements_at_0.06"), 0.6);
+      EXPECT_NEAR(row.values.at("smallest_elements_x3_at_0.06"), 1, 0.35);
+    }
+
     const auto& snapshots = row.more.at("snapshots");
     EXPECT_GE(snapshots.size(), 3u);
     EXPECT_EQ(snapshots.back().at("t").get<double>(), t.back()) << "the last good surface";
