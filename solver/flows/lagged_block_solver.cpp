@@ -18,12 +18,16 @@ constexpr double largest_change = 0.05;
 
 constexpr int most_iterations = factorisation_cost + 1;
 
+/// Steps after which newer factors may take fewer iterations although the old ones take no more than at
+/// first, because the guesses have become better.
+constexpr int longest_service = 50;
+
 }  // namespace
 
 LaggedBlockSolver::LaggedBlockSolver(const SurfaceSpace& space) : space_(space), block_(space.pattern()) {}
 
 bool LaggedBlockSolver::is_due(double alpha) const {
-  return !(std::abs(alpha_ / alpha - 1) <= largest_change) ||
+  return !(std::abs(alpha_ / alpha - 1) <= largest_change) || steps_ == longest_service ||
          newest_iterations_ * steps_ > factorisation_cost + iterations_;
 }
 

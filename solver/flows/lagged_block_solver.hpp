@@ -14,7 +14,7 @@ namespace esfem {
 ///
 /// With c the cost of a factorisation in iterations and m_j the iterations of step j, a factorisation that
 /// serves n steps costs (c + m_1 + .. + m_n) / n a step. That is least when it is made afresh as soon as m_n
-/// exceeds this mean. The decision depends on counts alone, not on clocks.
+/// exceeds this mean, or after 50 steps. The decision depends on counts alone, not on clocks.
 class LaggedBlockSolver {
  public:
   /// The space must outlive the solver.

@@ -69,7 +69,8 @@ ColumnSizes attainable(const SymmetricMatrix& M, const SymmetricMatrix& A, doubl
                        const ComplexRows& y, const ComplexRows& b, ComplexRows& work) {
   for (int j = 0; j < y.rows(); ++j) {
     const int diagonal = M.pattern->column_start[j];
-    work.row(j) = std::hypot(M.values[diagonal], factor * A.values[diagonal]) * y.row(j);
+    const double re = M.values[diagonal], im = factor * A.values[diagonal];
+    work.row(j) = std::sqrt(re * re + im * im) * y.row(j);
   }
   return 5e-16 * (sizes(b) + sizes(work)) + std::numeric_limits<double>::min();
 }
@@ -160,8 +161,8 @@ std::optional<int> BlockSolver::refine(double alpha, double beta, double gamma, 
   const double kappa = std::sqrt(gamma / (alpha * beta)), factor = kappa * beta;
   f.b << kappa * r, s;
   f.refined << kappa * alpha * u, w;
-  const ColumnSizes bound = attainable(M, A, factor, f.refined, f.b, f.rest);
   const auto excess = [&] {
+    const ColumnSizes bound = attainable(M, A, factor, f.refined, f.b, f.rest);
     subtract_product(M, A, factor, f.refined, f.b, f.rest);
     return (sizes(f.rest) / bound).maxCoeff<Eigen::PropagateNaN>();
   };
