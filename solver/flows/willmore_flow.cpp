@@ -104,7 +104,7 @@ WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field the
       theta_(std::move(theta)),
       M_(space.matrix()),
       A_(space.matrix()),
-      block_(space.pattern()) {
+      lagged_(space) {
   if (!(variant.relaxation >= 0))
     throw InputError(format("relaxation: found %g, expected a number >= 0", variant.relaxation));
   if (variant.F == Variant::implicit) implicit_ = std::make_unique<ImplicitCoupling>();
@@ -134,11 +134,11 @@ void WillmoreFlow::step(const History<State>& history, int q, double tau, State&
   next.u = loads_.leftCols(4) - M_sum_ / tau;
   next.w = loads_.rightCols(4);
   if (theta_.size() > 0) next.w += theta_;
-  block_.factorise(delta_0 / tau, 1.0, 1.0, M_, A_);
   if (implicit_)
-    implicit_->solve(space_, x_tilde_, u_w_tilde_, block_, next.u, next.w);
+    implicit_->solve(space_, x_tilde_, u_w_tilde_, lagged_.factorise(delta_0 / tau, x_tilde_, M_, A_), next.u,
+                     next.w);
   else
-    block_.solve(next.u, next.w);
+    lagged_.solve(delta_0 / tau, x_tilde_, M_, A_, u_tilde_, w_tilde_, next.u, next.w);
   if (variant_.project) project(next.u, next.w);
 
   // (3.4): v = V nu, delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}

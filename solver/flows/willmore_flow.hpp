@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "solver/assembly/surface_space.hpp"
-#include "solver/linalg/block_solver.hpp"
+#include "solver/flows/lagged_block_solver.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "solver/time/history.hpp"
@@ -54,13 +54,22 @@ class WillmoreFlow {
   /// SingularityError where the surface is singular or no longer resolved (regularity.hpp).
   void step(const History<State>& history, int q, double tau, State& next);
 
+  /// The number of factorisations so far: with extrapolated F it is smaller than that of the steps, because
+  /// one serves several of them (LaggedBlockSolver).
+  int factorisations() const { return lagged_.factorisations(); }
+
+  /// What the flow keeps from step to step, for checkpoints: resume(progress()) makes another flow go on with
+  /// the same bits.
+  nlohmann::json progress() const { return lagged_.progress(); }
+  void resume(const nlohmann::json& saved) { lagged_.resume(saved); }
+
  private:
   struct ImplicitCoupling;
   const SurfaceSpace& space_;
   Variant variant_;
   Field theta_;
   SymmetricMatrix M_, A_;
-  BlockSolver block_;
+  LaggedBlockSolver lagged_;
   std::unique_ptr<ImplicitCoupling> implicit_;
   Field x_tilde_, u_tilde_, w_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
 };

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <vector>
 
 #include "solver/error.hpp"
@@ -25,6 +26,55 @@ std::vector<int> columns(const SparsityPattern& pattern) {
   return column;
 }
 
+constexpr int refined_columns = 4;
+
+/// Four complex columns, node by node: the real parts of a node and then its imaginary parts.
+using ComplexRows = Eigen::Matrix<double, Eigen::Dynamic, 2 * refined_columns, Eigen::RowMajor>;
+using ColumnSizes = Eigen::Array<double, 1, refined_columns>;
+
+/// rest = b - (M + i factor A) y.
+void subtract_product(const SymmetricMatrix& M, const SymmetricMatrix& A, double factor, const ComplexRows& y,
+                      const ComplexRows& b, ComplexRows& rest) {
+  using Columns = Eigen::Matrix<double, refined_columns, 1>;
+  const auto real = [](auto& rows, int i) { return Columns::Map(rows.row(i).data()); };
+  const auto imaginary = [](auto& rows, int i) { return Columns::Map(rows.row(i).data() + refined_columns); };
+  const SparsityPattern& pattern = *M.pattern;
+  rest = b;
+  for (int j = 0; j < pattern.size; ++j) {
+    const Columns re = real(y, j), im = imaginary(y, j);
+    Columns re_sum = Columns::Zero(), im_sum = Columns::Zero();
+    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) {
+      const int i = pattern.row[k];
+      const double m = M.values[k], a = factor * A.values[k];
+      re_sum += m * real(y, i) - a * imaginary(y, i);
+      im_sum += m * imaginary(y, i) + a * real(y, i);
+      if (i == j) continue;
+      Columns::Map(rest.row(i).data()) -= m * re - a * im;
+      Columns::Map(rest.row(i).data() + refined_columns) -= m * im + a * re;
+    }
+    Columns::Map(rest.row(j).data()) -= re_sum;
+    Columns::Map(rest.row(j).data() + refined_columns) -= im_sum;
+  }
+}
+
+/// The size of each complex column.
+ColumnSizes sizes(const ComplexRows& rows) {
+  const Eigen::Matrix<double, 1, 2 * refined_columns> squares = rows.colwise().squaredNorm();
+  return (squares.head<refined_columns>() + squares.tail<refined_columns>()).array().sqrt();
+}
+
+/// What each column's residual may be. In these units that of a direct solution is 1.5e-16 to 2e-16, for tau
+/// from 1e-5 to 8e-3 and edges from 0.1 to 0.2, while it goes from 5e-16 to 7e-14 relative to b.
+ColumnSizes attainable(const SymmetricMatrix& M, const SymmetricMatrix& A, double factor,
+                       const ComplexRows& y, const ComplexRows& b, ComplexRows& work) {
+  for (int j = 0; j < y.rows(); ++j) {
+    const int diagonal = M.pattern->column_start[j];
+    const double re = M.values[diagonal], im = factor * A.values[diagonal];
+    work.row(j) = std::sqrt(re * re + im * im) * y.row(j);
+  }
+  return 5e-16 * (sizes(b) + sizes(work)) + std::numeric_limits<double>::min();
+}
+
 }  // namespace
 
 struct BlockSolver::Factor {
@@ -32,10 +82,23 @@ struct BlockSolver::Factor {
   ComplexMumps mumps;
   Eigen::MatrixXcd y;
   double alpha = 0, kappa = 0;
+  ComplexRows b, refined, rest;
 
   explicit Factor(std::shared_ptr<const SparsityPattern> shared)
       : pattern(std::move(shared)),
-        mumps("block system", pattern->row, columns(*pattern), metis_ordering(*pattern), ComplexMumps::none) {
+        mumps("block system", pattern->row, columns(*pattern), metis_ordering(*pattern), ComplexMumps::none),
+        b(pattern->size, 2 * refined_columns),
+        refined(b),
+        rest(b) {}
+
+  /// One iteration of the refinement.
+  void add_solution_of_rest() {
+    y.resize(rest.rows(), refined_columns);
+    y.real() = rest.leftCols<refined_columns>();
+    y.imag() = rest.rightCols<refined_columns>();
+    mumps.solve(y.data(), refined_columns);
+    refined.leftCols<refined_columns>() += y.real();
+    refined.rightCols<refined_columns>() += y.imag();
   }
 };
 
@@ -44,15 +107,20 @@ BlockSolver::BlockSolver(std::shared_ptr<const SparsityPattern> pattern)
 
 BlockSolver::~BlockSolver() = default;
 
-void BlockSolver::factorise(double alpha, double beta, double gamma, const SymmetricMatrix& M,
-                            const SymmetricMatrix& A) {
-  Factor& f = *factor_;
+void BlockSolver::check_system(double alpha, double beta, double gamma, const SymmetricMatrix& M,
+                               const SymmetricMatrix& A) const {
   if (!(alpha > 0 && beta > 0 && gamma > 0)) {
     throw InputError(
         format("block system: found the factors %g, %g, %g; expected positive ones", alpha, beta, gamma));
   }
-  if (M.pattern != f.pattern || A.pattern != f.pattern)
+  if (M.pattern != factor_->pattern || A.pattern != factor_->pattern)
     throw InputError("block system: matrix is not on the pattern that was analysed");
+}
+
+void BlockSolver::factorise(double alpha, double beta, double gamma, const SymmetricMatrix& M,
+                            const SymmetricMatrix& A) {
+  Factor& f = *factor_;
+  check_system(alpha, beta, gamma, M, A);
   if (!std::isfinite(M.values.sum() + A.values.sum()))
     throw NumericsError("matrix to factorise is not finite");
   f.alpha = alpha;
@@ -78,6 +146,38 @@ void BlockSolver::solve(Field& r_to_u, Field& s_to_w) {
   f.mumps.solve(f.y.data(), static_cast<int>(f.y.cols()));
   r_to_u = f.y.real() / (f.kappa * f.alpha);
   s_to_w = f.y.imag();
+}
+
+std::optional<int> BlockSolver::refine(double alpha, double beta, double gamma, const SymmetricMatrix& M,
+                                       const SymmetricMatrix& A, const Field& r, const Field& s, int most,
+                                       Field& u, Field& w) {
+  Factor& f = *factor_;
+  check_system(alpha, beta, gamma, M, A);
+  for (const Field* field : std::initializer_list<const Field*>{&r, &s, &u, &w}) {
+    if (field->rows() != f.pattern->size || field->cols() != refined_columns)
+      throw InputError(format("refinement of a block system: found a field of %td x %td, expected %d x %d",
+                              field->rows(), field->cols(), f.pattern->size, refined_columns));
+  }
+  const double kappa = std::sqrt(gamma / (alpha * beta)), factor = kappa * beta;
+  f.b << kappa * r, s;
+  f.refined << kappa * alpha * u, w;
+  const auto excess = [&] {
+    const ColumnSizes bound = attainable(M, A, factor, f.refined, f.b, f.rest);
+    subtract_product(M, A, factor, f.refined, f.b, f.rest);
+    return (sizes(f.rest) / bound).maxCoeff<Eigen::PropagateNaN>();
+  };
+  std::optional<int> iterations;
+  double before = excess();
+  for (int n = 1; n <= most && !iterations; ++n) {
+    f.add_solution_of_rest();
+    const double now = excess();
+    if (now <= 1) iterations = n;
+    if (!(now * std::pow(now / before, most - n) <= 1)) break;
+    before = now;
+  }
+  u = f.refined.leftCols<refined_columns>() / (kappa * alpha);
+  w = f.refined.rightCols<refined_columns>();
+  return iterations;
 }
 
 }  // namespace esfem

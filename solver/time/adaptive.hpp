@@ -93,7 +93,7 @@ AdaptiveRun integrate_adaptive(Flow& flow, const AdaptiveGrid& grid, typename Fl
   initial.t = 0;
   until_end(checkpoint, [&] {
     typename Flow::State& next = initial;
-    if (!checkpoint || !checkpoint->resume(to_json(grid), initial, past, done))
+    if (!resume_run(checkpoint, flow, to_json(grid), initial, past, done))
       at_step(0, 0.0, [&] {
         check_finite(next);
         observe(0, std::as_const(next));

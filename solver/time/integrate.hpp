@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "solver/error.hpp"
@@ -122,6 +123,25 @@ void take_starting_steps(Flow& flow, const TimeGrid& grid, const typename Flow::
     });
 }
 
+template <class Flow, class = void>
+struct KeepsProgress : std::false_type {};
+template <class Flow>
+struct KeepsProgress<Flow,
+                     std::void_t<decltype(std::declval<Flow&>().resume(std::declval<Flow&>().progress()))>>
+    : std::true_type {};
+
+/// Checkpoint::resume, before which the flow itself is attached when it has progress() and resume(json). A
+/// checkpoint serves one run. False without checkpoint.
+template <class Flow, class State>
+bool resume_run(Checkpoint* checkpoint, Flow& flow, const nlohmann::json& grid, const State& initial,
+                History<State>& past, RunPosition& done) {
+  if (!checkpoint) return false;
+  if constexpr (KeepsProgress<Flow>::value)
+    checkpoint->attach([&flow] { return flow.progress(); },
+                       [&flow](const nlohmann::json& saved) { flow.resume(saved); });
+  return checkpoint->resume(grid, initial, past, done);
+}
+
 /// Runs `body`, the steps of a run, and removes the file of the checkpoint when the run has come to its end,
 /// be it by a failure of the numerics.
 template <class Body>
@@ -143,8 +163,8 @@ void until_end(Checkpoint* checkpoint, Body&& body) {
 /// start is an InputError. NumericsErrors (of the observer too) are rethrown with step and time; a non-finite
 /// value in a new state is one too. With a checkpoint the run goes on where one that was stopped had saved
 /// its states (after the starting steps, that is), and observes the steps from there on: with the same
-/// numbers, as long as `step` depends on its arguments alone, and not on what an earlier step has left in the
-/// flow.
+/// numbers, as long as `step` depends on its arguments alone, or what an earlier step has left in the flow is
+/// restored by its resume(progress()).
 template <class Flow, class Observer>
 void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
                const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe,
@@ -157,7 +177,7 @@ void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
   RunPosition done;
   initial.t = 0;
   until_end(checkpoint, [&] {
-    if (!checkpoint || !checkpoint->resume(to_json(grid), initial, past, done)) {
+    if (!resume_run(checkpoint, flow, to_json(grid), initial, past, done)) {
       take_starting_steps(flow, grid, initial, exact_state, observe, past);
       done.n = grid.order - 1;
     }

@@ -326,6 +326,39 @@ TEST(WillmoreFlow, SurfaceDiffusionKeepsTheVolumeAndShrinksTheArea) {
   EXPECT_GT(std::abs(changes(Variant::willmore).first), 2e-3) << "Willmore flow does not keep it";
 }
 
+/// The flow without memory: every step factorises.
+struct DirectWillmoreFlow {
+  using State = WillmoreFlow::State;
+  const SurfaceSpace& space;
+  Variant variant;
+
+  void step(const History<State>& history, int q, double tau, State& next) {
+    WillmoreFlow(space, variant).step(history, q, tau, next);
+  }
+};
+
+TEST(WillmoreFlow, OneFactorisationServesManyStepsWithTheSameResult) {
+  const Surface surface = ellipsoid(1, 1, 0.6);
+  Mesh mesh = ellipsoid_mesh({1, 1, 0.6}, 2, 2);
+  project_nodes(mesh, surface);
+  const SurfaceSpace space(mesh);
+  const TimeGrid grid = {2, 5e-4, 100, parse_start("cascade")};
+  for (const Variant::Law law : {Variant::willmore, Variant::surface_diffusion}) {
+    Variant variant;
+    variant.law = law;
+    WillmoreFlow flow(space, variant);
+    DirectWillmoreFlow direct{space, variant};
+    const State start = willmore_start_on(space, surface, mesh.nodes, law, false).state;
+    const State found = last_state(flow, grid, start), expected = last_state(direct, grid, start);
+    EXPECT_LT(flow.factorisations(), grid.steps / 3);
+    EXPECT_GT(flow.factorisations(), 2) << "the surface moves";
+    for (const auto& field : State::fields) {
+      const Field &some = found.*field.member, &other = expected.*field.member;
+      EXPECT_LT((some - other).norm(), 1e-11 * other.norm()) << field.name;
+    }
+  }
+}
+
 TEST(WillmoreFlow, SaysWhatItDoesNotTake) {
   const StationarySphere unit(1, 2);
   Variant variant;

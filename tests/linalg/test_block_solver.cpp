@@ -124,6 +124,62 @@ TEST(BlockSolver, TheSameNumbersGiveTheSameBits) {
   EXPECT_EQ(w[0], w[1]);
 }
 
+/// M and A after the surface has moved.
+std::pair<SymmetricMatrix, SymmetricMatrix> moved(const Blocks& of, double distance) {
+  std::pair<SymmetricMatrix, SymmetricMatrix> matrices = {of.space.matrix(), of.space.matrix()};
+  const Field x = of.mesh.nodes + distance * of.mesh.nodes.array().sin().matrix();
+  of.space.assemble(x, matrices.first, matrices.second);
+  return matrices;
+}
+
+double difference(const Field& found, const Field& expected) {
+  return (found - expected).norm() / expected.norm();
+}
+
+TEST(BlockSolver, RefinementAttainsTheDirectSolutionWithTheFactorsOfAnotherSystem) {
+  const Blocks of(3);
+  BlockSolver direct(of.space.pattern()), solver(of.space.pattern());
+  const auto [M, A] = moved(of, 1e-3);
+  for (const auto& [alpha, beta, gamma] : {std::array{1500.0, 1.0, 1.0}, std::array{1.5, 0.02, 0.5}}) {
+    solver.factorise(1.01 * alpha, beta, gamma, of.M, of.A);
+    direct.factorise(alpha, beta, gamma, M, A);
+    Field u_direct = of.r, w_direct = of.s;
+    direct.solve(u_direct, w_direct);
+    Field u = 0.99 * u_direct, w = 0.99 * w_direct;
+    EXPECT_FALSE(solver.refine(alpha, beta, gamma, M, A, of.r, of.s, 1, u, w));
+    EXPECT_GT(difference(u, u_direct) + difference(w, w_direct), 1e-7);
+    const std::optional<int> iterations = solver.refine(alpha, beta, gamma, M, A, of.r, of.s, 20, u, w);
+    ASSERT_TRUE(iterations);
+    EXPECT_GE(*iterations, 3);
+    EXPECT_LT(difference(u, u_direct), 1e-12);
+    EXPECT_LT(difference(w, w_direct), 1e-12);
+    EXPECT_EQ(solver.refine(alpha, beta, gamma, M, A, of.r, of.s, 20, u, w), 1) << "it is there already";
+  }
+}
+
+TEST(BlockSolver, RefinementWithTheSystemsOwnFactorsTakesOneIteration) {
+  const Blocks of(3);
+  BlockSolver solver(of.space.pattern());
+  solver.factorise(1500, 1, 1, of.M, of.A);
+  Field u = Field::Zero(of.r.rows(), 4), w = u, u_direct = of.r, w_direct = of.s;
+  EXPECT_EQ(solver.refine(1500, 1, 1, of.M, of.A, of.r, of.s, 5, u, w), 1);
+  solver.solve(u_direct, w_direct);
+  EXPECT_LT(difference(u, u_direct), 1e-13);
+  EXPECT_LT(difference(w, w_direct), 1e-13);
+}
+
+TEST(BlockSolver, RefinementGivesUpWhereTheFactorsAreTooOld) {
+  const Blocks of(2);
+  BlockSolver solver(of.space.pattern());
+  solver.factorise(1500, 1, 1, of.M, of.A);
+  Field u = Field::Zero(of.r.rows(), 4), w = u;
+  const auto [M, A] = moved(of, 0.5);
+  EXPECT_FALSE(solver.refine(1500, 1, 1, M, A, of.r, of.s, 20, u, w));
+  Field bad = of.r;
+  bad(3, 1) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(solver.refine(1500, 1, 1, of.M, of.A, bad, of.s, 20, u, w));
+}
+
 TEST(MetisOrdering, IsTheSamePermutationEachTime) {
   const Blocks of(3);
   const std::vector<int> ordering = metis_ordering(*of.space.pattern());
@@ -153,6 +209,8 @@ TEST(BlockSolver, SaysWhatIsWrong) {
   solver.factorise(1, 1, 1, of.M, of.A);
   Field wrong = other.r;
   EXPECT_THAT([&] { solver.solve(wrong, w); }, ThrowsMessage<InputError>(HasSubstr("rows")));
+  EXPECT_THAT([&] { solver.refine(1, 1, 1, of.M, of.A, of.r, of.s, 1, wrong, w); },
+              ThrowsMessage<InputError>(HasSubstr("found a field of 642 x 4")));
 }
 
 }  // namespace
