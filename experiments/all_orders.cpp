@@ -20,9 +20,8 @@ namespace {
 using namespace esfem;
 
 const std::vector<std::string> known_runs = {"space", "time"};
-/// Step sizes of an order in tau, meshes of an order in h, and how much smaller the small steps are (2^2
-/// times).
-const int step_count = 4, level_count = 3, reference_gap = 2;
+/// Step sizes of an order in tau, and meshes of an order in h.
+const int step_count = 3, level_count = 3;
 
 struct OwnOptions {
   std::vector<std::string> flows, runs = known_runs;
@@ -34,6 +33,11 @@ struct Planned {
   int k;
 };
 
+/// The small steps are smaller than those of an order 2^gap times: they are of order 3 at least.
+int reference_gap(int bdf) {
+  return bdf <= 2 ? 1 : 2;
+}
+
 /// All runs of one flow with one degree and order.
 void add_runs(const OrdersOfFlow& flow, int degree, int bdf, const Options& options, const OwnOptions& own,
               std::vector<Planned>& runs) {
@@ -41,12 +45,13 @@ void add_runs(const OrdersOfFlow& flow, int degree, int bdf, const Options& opti
     if (kind == "time") {
       const int first = flow.first_k.at(bdf - 1);
       const std::vector<int> steps = options.steps.value_or(range(first, first + step_count - 1));
-      const int reference = *std::max_element(steps.begin(), steps.end()) + reference_gap;
+      const int reference = *std::max_element(steps.begin(), steps.end()) + reference_gap(bdf);
       for (int k : steps) runs.push_back({{flow, degree, bdf, true, 0, reference}, k});
     } else {
-      const int k = flow.space_k.at(bdf - 1);
-      for (int level : options.levels.value_or(range(0, level_count - 1)))
-        runs.push_back({{flow, degree, bdf, false, level, 0}, k});
+      for (int k : options.steps.value_or(std::vector<int>{flow.space_k.at(bdf - 1)})) {
+        for (int level : options.levels.value_or(range(0, level_count - 1)))
+          runs.push_back({{flow, degree, bdf, false, level, 0}, k});
+      }
     }
   }
 }
@@ -88,8 +93,8 @@ std::vector<Planned> planned_runs(const Options& options, const OwnOptions& own)
 /// Seconds on one core.
 double estimated_cost(const Planned& planned) {
   const OrderRun& run = planned.run;
-  const double h = run.in_time ? run.flow.time_h.at(run.degree - 1)
-                               : edge_length(run.flow.space_h.at(run.degree - 1), run.level);
+  const double h =
+      run.in_time ? run.flow.time_h.at(run.degree - 1) : run.flow.edge_length(run.degree, run.level);
   const double vertices = run.flow.vertices / (h * h), nodes = vertices * run.degree * run.degree;
   const double steps = run.in_time
                            ? run.flow.time.count(run.reference_k) + 1.5 * run.flow.time.count(planned.k)
@@ -103,15 +108,15 @@ std::vector<Cell> cells(const std::vector<Planned>& runs) {
     const OrderRun run = planned.run;
     const char* kind = run.in_time ? "time" : "space";
     const HalvedSteps& steps = run.in_time ? run.flow.time : run.flow.space;
-    list.push_back({run.flow.flow + format("_p%d_bdf%d_%s%d", run.degree, run.bdf, kind,
-                                           run.in_time ? planned.k : run.level),
-                    estimated_cost(planned),
-                    [=](const Row& row, const std::string&) { return run_all_orders(run, row); },
-                    planned_row(run.level, steps, planned.k,
-                                {{"flow", run.flow.flow},
-                                 {"degree", std::to_string(run.degree)},
-                                 {"bdf", std::to_string(run.bdf)},
-                                 {"run", kind}})});
+    list.push_back(
+        {run.flow.flow + format("_p%d_bdf%d_%s_h%d_tau%d", run.degree, run.bdf, kind, run.level, planned.k),
+         estimated_cost(planned),
+         [=](const Row& row, const std::string&) { return run_all_orders(run, row); },
+         planned_row(run.level, steps, planned.k,
+                     {{"flow", run.flow.flow},
+                      {"degree", std::to_string(run.degree)},
+                      {"bdf", std::to_string(run.bdf)},
+                      {"run", kind}})});
   }
   return list;
 }

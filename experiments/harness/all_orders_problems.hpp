@@ -28,6 +28,8 @@ struct OrdersOfFlow {
 
   double vertices;          ///< times 1/h²: about how many vertices a mesh has
   double seconds_per_node;  ///< of a step
+
+  double edge_length(int degree, int level) const;  ///< of the meshes in space
 };
 
 /// All flows, in the order of the figures.
@@ -51,7 +53,7 @@ struct OrderRun {
 /// In time: errors against small steps on the same mesh, with tau; values: "<quantity>_<norm>_double", those
 /// with 2 tau.
 /// Both: the value "unstable", 1 when a run ends before its time, or when the errors of one of the flow's
-/// quantities are larger with tau than with 2 tau (in space: twice as large); the errors of an unstable row
+/// quantities are larger with tau than with 2 tau (in space: ten times); the errors of an unstable row
 /// are values "<quantity>_<norm>_unstable".
 Row run_all_orders(const OrderRun& run, Row row);
 
