@@ -149,7 +149,7 @@ struct WillmoreOnTorus {
       : on(torus(major, minor), isothermal_torus_grid(major, minor, cells(h), cells(h)), degree),
         start(willmore_start_on(on.space, exact.surface(0), on.mesh.nodes, WillmoreFlow::Variant::willmore,
                                 true)) {}
-  Flow flow() const { return {on.space, {}, start.theta}; }
+  Flow flow() const { return {on.space, without_projections(), start.theta}; }
   Flow::State state(double t) const {
     Flow::State state = start.state;
     state.t = t;
@@ -319,24 +319,24 @@ const std::vector<OrdersOfFlow>& orders_of_flows() {
   // clang-format off
   static const std::vector<OrdersOfFlow> flows = {
       {"mean_curvature", "self-shrinking torus", {"x", "v", "nu", "H"},
-       {0.2, 0.02}, {0.235, 0.47, 0.75, 0.94}, {2, 2, 1, 1, 1},
+       {0.2, 0.02}, {0.235, 0.375, 0.54, 0.63}, {3, 2, 1, 1, 1},
        {0.2, 0.02}, 0.08, {0.63, 0.94, 1.25, 1.5}, {2, 2, 2, 2, 2},
        113, 8e-6},
       {"dziuk", "self-shrinking torus", {"x"},
-       {0.2, 0.02}, {0.235, 0.47, 0.75, 0.94}, {2, 2, 2, 2, 2},
+       {0.2, 0.02}, {0.235, 0.375, 0.54, 0.63}, {3, 2, 2, 2, 2},
        {0.2, 0.02}, 0.08, {0.3, 0.47, 0.75, 0.94}, {3, 3, 3, 2, 2},
        113, 4e-6},
       {"coupled_diffusion", "growing sphere", {"x", "v", "u"},
-       {1, 0.1}, {0.24, 0.48, 0.7, 0.9}, {3, 3, 3, 3, 3},
-       {1, 0.1}, 0.4, {0.5, 0.8, 1.0, 1.1}, {3, 2, 3, 2, 3},
+       {0.5, 0.1}, {0.19, 0.38, 0.57, 0.75}, {5, 4, 3, 3, 3},
+       {1, 0.1}, 0.4, {0.5, 0.8, 1.0, 1.0}, {3, 2, 3, 2, 3},
        27.5, 3e-6},
       {"willmore", "Clifford torus; ellipsoid", {"x", "nu", "H"},
-       {0.1, 0.01}, {0.45, 0.7, 0.85, 0.95}, {1, 1, 1, 1, 1},
+       {0.02, 0.01}, {0.45, 0.6, 0.75, 0.85}, {3, 3, 3, 3, 3},
        {0.5, 0.1}, 0.1, {0.9, 1.25, 1.28, 1.28}, {4, 3, 4, 4, 5},
        170, 8e-6},
       {"cahn_hilliard", "evolving ellipsoid", {"u", "w"},
-       {1, 0.1}, {0.24, 0.48, 0.7, 0.9}, {3, 3, 3, 3, 3},
-       {1, 0.2}, 0.4, {0.5, 0.8, 1.0, 1.1}, {5, 3, 3, 3, 4},
+       {0.2, 0.02}, {0.19, 0.38, 0.57, 0.75}, {3, 2, 2, 2, 2},
+       {1, 0.2}, 0.4, {0.5, 0.8, 1.0, 1.0}, {5, 3, 3, 3, 4},
        27.5, 5e-6},
   };
   // clang-format on
