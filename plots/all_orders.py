@@ -72,7 +72,7 @@ def is_hidden(rows, quantity, norm):
 
 
 def _figure(flows, rows, fits):
-    width, line, row_gap, head = style.WIDTH, 0.112, 0.30, 0.30
+    width, line, row_gap, head = style.WIDTH, 0.104, 0.30, 0.30
     heights = [4 * (line * len(FLOWS[flow][1]) + 0.05) for flow in flows]
     foot = 0.62
     height = head + sum(heights) + row_gap * len(flows) + foot
