@@ -39,6 +39,7 @@
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
 #include "experiments/harness/method_options.hpp"
+#include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
@@ -309,65 +310,21 @@ void run_convergence(MovingMesh& on, const std::string& kind, const TimeGrid& gr
   row.series = errors.series();
 }
 
-/// The largest nodal errors over the steps of a run, in the norms of M and A at the time.
-class LargestDifferences {
- public:
-  explicit LargestDifferences(const SurfaceSpace& space)
-      : space_(space), M_(space.matrix()), A_(space.matrix()) {}
-
-  void add(const State& state, const Field& reference) {
-    space_.assemble(state.x, M_, A_);
-    const SquaredNorms norms = nodal_norms(M_, A_, u_and_w(state) - reference);
-    for (int column : {0, 1}) {
-      const double L2 = norms.L2[column], H1_semi = std::max(0.0, norms.H1_semi[column]);
-      std::map<std::string, double>& largest = errors_[column == 0 ? "u" : "w"];
-      const auto raise = [](double& most, double squared) { most = std::max(most, std::sqrt(squared)); };
-      raise(largest["nodal_L2"], L2);
-      raise(largest["nodal_H1"], L2 + H1_semi);
-      raise(largest["nodal_H1_semi"], H1_semi);
-    }
-  }
-  const Errors& errors() const { return errors_; }
-
- private:
-  const SurfaceSpace& space_;
-  SymmetricMatrix M_, A_;
-  Errors errors_;
-};
-
-/// Errors against the solution of the same discretisation in space, by BDF5 and small steps. It gives the
-/// starting values, too: Ritz maps are off it by the error in space, and how far is a matter of tau. They
-/// are those before orders_begin.
+/// Errors from orders_begin on against the solution of the same discretisation in space, by BDF5 and small
+/// steps.
 void run_order(MovingMesh& on, const TimeGrid& grid, Row& row) {
   const TimeGrid small{
       5, on.smallest_tau, static_cast<int>(std::lround(time_steps.end_time / on.smallest_tau)), {}};
   const ExactState starts = exact_starts(on, StartValues::ritz);
   const State start = starts(0);
   Flow flow = cahn_hilliard_flow(on, theta_of(on.space, start));
+  const SmallSteps reference(flow, small, start, starts, small.steps / grid.steps);
 
-  const int ratio = small.steps / grid.steps;
-  std::vector<State> reference;  // at the steps of the grid
-  integrate(flow, small, start, starts, [&](int n, const State& state) {
-    if (n % ratio == 0) reference.push_back(state);
-  });
-
-  LargestDifferences differences(on.space);
-  History<State> past(grid.order);
-  State next;
+  LargestDifferences differences(on.space, {{"u", 1}, {"w", 1}});
   const int first = static_cast<int>(std::lround(orders_begin / grid.tau));
-  for (int n = first - grid.order; n < first; ++n) {
-    next = reference.at(n);
-    past.push(next);
-  }
-  for (int n = first; n <= grid.steps; ++n) {
-    next.t = n * grid.tau;
-    at_step(n, next.t, [&] {
-      flow.step(past, grid.order, grid.tau, next);
-      check_finite(next);
-    });
-    differences.add(next, u_and_w(reference[n]));
-    past.push(next);
-  }
+  reference.compare(grid.order, grid.tau, first, [&](int, const State& state, const State& exact) {
+    differences.add(state.x, u_and_w(state) - u_and_w(exact));
+  });
   row.errors = differences.errors();
 }
 

@@ -30,6 +30,7 @@
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
 #include "experiments/harness/method_options.hpp"
+#include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/growing_sphere.hpp"
@@ -276,20 +277,21 @@ void run_growth(const GrowingSphereRuns& runs, TimeGrid grid, Row& row) {
       (mean_u_from(excess) - mean_u_from(0)) / excess * std::exp(end_time * end_time);
 }
 
-/// Errors against the solution of the same discretisation in space, by BDF5 and small steps. It gives the
-/// starting values, too: exact ones are off it by the error in space, and how far is a matter of tau.
+/// Errors at the end against the solution of the same discretisation in space, by BDF5 and small steps.
 void run_order(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
   const TimeGrid small{5, time_steps.tau(reference_k), time_steps.count(reference_k),
                        parse_start("substeps:128")};
-  const int ratio = small.steps / grid.steps;
-  std::vector<State> reference;  // at the steps 0, .., q - 1 of the grid, and at the end
-  runs.run(small, {}, GrowingSphereProblem::additive, {}, [&](int n, const State& state) {
-    if ((n % ratio == 0 && n / ratio < grid.order) || n == small.steps) reference.push_back(state);
+  const CoupledDiffusionParameters parameters;
+  CoupledDiffusion<GrowingSphereProblem> flow(
+      runs.space, GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised), parameters, {});
+  const SmallSteps reference(flow, small, runs.exact_state(0), {}, small.steps / grid.steps);
+  LargestDifferences differences(runs.space, runs.exact.quantities);
+  reference.compare(grid.order, grid.tau, grid.order, [&](int n, const State& state, const State& exact) {
+    if (n < grid.steps) return;
+    differences.add(runs.exact.trajectories(runs.x0, time_steps.end_time),
+                    table_columns(state) - table_columns(exact));
   });
-  const State end = runs.end_of(grid, {}, [&](double t) { return reference[std::lround(t / grid.tau)]; });
-  row.errors["x"] = nodal_errors(runs, end.x - reference.back().x);
-  row.errors["v"] = nodal_errors(runs, end.v - reference.back().v);
-  row.errors["u"] = nodal_errors(runs, end.u - reference.back().u);
+  row.errors = differences.errors();
 }
 
 /// Errors against the exact solution at the end.

@@ -126,10 +126,14 @@ void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactStat
   if (run.checkpoint) warn(run.checkpoint->remark());
 }
 
-/// A sphere has an exact solution under mean curvature flow.
+/// A sphere and the self-shrinking torus have exact solutions under mean curvature flow.
 std::optional<ExactEvolution> exact_solution(const EvolveConfig& config) {
-  if (!config.surface || config.surface->name != "sphere") return {};
-  return shrinking_sphere(config.surface->parameters.at("radius"));
+  if (!config.surface) return {};
+  const auto& name = config.surface->name;
+  const auto& parameters = config.surface->parameters;
+  if (name == "sphere") return shrinking_sphere(parameters.at("radius"));
+  if (name == "angenent_torus") return shrinking_angenent_torus(parameters.at("scale"));
+  return {};
 }
 
 void run_mean_curvature(const Run& run) {

@@ -19,6 +19,7 @@
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
 #include "experiments/harness/method_options.hpp"
+#include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/willmore_flow.hpp"
@@ -77,19 +78,13 @@ void record_errors(WillmoreFlow& flow, const SurfaceSpace& space, const State& i
                    Row& row) {
   const TimeGrid small{5, time_steps.tau(reference_k), time_steps.count(reference_k),
                        parse_start("substeps:128")};
-  const int ratio = small.steps / grid.steps;
-  std::vector<State> reference;
-  integrate(flow, small, initial, {}, [&](int n, const State& state) {
-    if (n % ratio == 0) reference.push_back(state);
-  });
+  const SmallSteps reference(flow, small, initial, {}, small.steps / grid.steps);
   SymmetricMatrix M = space.matrix(), A = space.matrix();
-  const auto exact = [&](double t) { return reference.at(std::lround(t / grid.tau)); };
-  integrate(flow, grid, initial, std::function<State(double)>(exact), [&](int n, const State& state) {
-    if (n < grid.order) return;
-    space.assemble(reference[n].x, M, A);
+  reference.compare(grid.order, grid.tau, grid.order, [&](int, const State& state, const State& exact) {
+    space.assemble(exact.x, M, A);
     for (const auto& [name, field] : {std::pair("x", &State::x), {"u", &State::u}, {"w", &State::w}}) {
       double& largest = row.errors[name]["nodal_L2"];
-      largest = std::max(largest, std::sqrt(M.energy(state.*field - reference[n].*field)));
+      largest = std::max(largest, std::sqrt(M.energy(state.*field - exact.*field)));
     }
   });
 }

@@ -36,7 +36,7 @@ std::string evolve_config_help() {
                 "tolerance": 1e-3,            follow the solution; of u (mean_curvature, coupled_diffusion, willmore,
                 "first_step": 1e-6,           surface_diffusion, phase_separation) or x, root mean square
                 "largest_step": 0.01},        default: no bound
-   "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere), else substeps:16
+   "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere, angenent_torus), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
    "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0},  mean_curvature
             {"mass": "extrapolated" | "reassembled", "law": "regularised" | "dynamic",

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "solver/error.hpp"
+#include "solver/surfaces/angenent_torus.hpp"
 
 namespace esfem {
 
@@ -58,6 +59,53 @@ ExactEvolution shrinking_sphere(double initial_radius) {
     // grad id = P, grad nu = A, and H is constant on the sphere.
     const Mat3 projection = Mat3::Identity() - shape.normal * shape.normal.transpose();
     gradient << projection, -H * shape.weingarten, shape.weingarten, Vec3::Zero();
+  };
+  return exact;
+}
+
+namespace {
+
+/// Slides the particles along the profile of the self-shrinking torus and scales it from `initial` to `now`.
+Field angenent_trajectories(const Field& x0, double initial, double now) {
+  const AngenentProfile& profile = angenent_profile();
+  const PeriodicTable<1> displacement = profile.displacement(2 * std::log(initial / now));
+  Field x(x0.rows(), 3);
+  for (int j = 0; j < x0.rows(); ++j) {
+    const double r = std::hypot(x0(j, 0), x0(j, 1));
+    const double s = profile.radial_arclength(r / initial, x0(j, 2) / initial);
+    const Eigen::Vector2d position = now * profile.at(s + displacement(s)[0]).position;
+    x.row(j) << position[0] * x0(j, 0) / r, position[0] * x0(j, 1) / r, position[1];
+  }
+  return x;
+}
+
+}  // namespace
+
+ExactEvolution shrinking_angenent_torus(double initial_scale) {
+  const auto scale = [initial_scale](double t) {
+    const double squared = initial_scale * initial_scale - t;
+    if (squared <= 0)
+      throw InputError(
+          format("the self-shrinking torus of scale %g has shrunk to a point at t = %g; t = %g was asked for",
+                 initial_scale, initial_scale * initial_scale, t));
+    return std::sqrt(squared);
+  };
+  ExactEvolution exact;
+  exact.quantities = {{"x", 3}, {"v", 3}, {"nu", 3}, {"H", 1}};
+  exact.surface = [scale](double t) { return angenent_torus(scale(t)); };
+  exact.trajectories = [scale, initial_scale](const Field& x0, double t) {
+    return angenent_trajectories(x0, initial_scale, scale(t));
+  };
+  exact.fields = [scale](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
+                         Eigen::MatrixXd& gradient) {
+    const Vec3& nu = shape.normal;
+    const double factor = 0.5 / (scale(t) * scale(t)), H = factor * y.dot(nu);
+    value << y, -H * nu, nu, H;
+    // grad id = P, grad nu = A, grad H = A y/(2 scale²).
+    const Mat3 projection = Mat3::Identity() - nu * nu.transpose();
+    const Vec3 gradient_of_H = factor * shape.weingarten * y;
+    gradient << projection, -H * shape.weingarten - gradient_of_H * nu.transpose(), shape.weingarten,
+        gradient_of_H;
   };
   return exact;
 }

@@ -39,6 +39,11 @@ struct ExactEvolution {
 /// Quantities x, v = -H nu, nu, H.
 ExactEvolution shrinking_sphere(double initial_radius);
 
+/// The self-shrinking torus (surfaces/angenent_torus.hpp) under mean curvature flow: its scale is sqrt(s² -
+/// t), s = initial_scale, for 0 <= t < s². Quantities x, v = -H nu, nu, H with H = <x, nu>/(2(s² - t)). The
+/// initial positions of trajectories must lie on the torus.
+ExactEvolution shrinking_angenent_torus(double initial_scale = 1);
+
 /// A sphere at rest, as Willmore flow and surface diffusion leave it (kll21 §7.1). Quantities x, nu, H.
 ExactEvolution stationary_sphere(double radius);
 

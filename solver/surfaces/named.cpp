@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "solver/error.hpp"
+#include "solver/surfaces/angenent_torus.hpp"
 
 namespace esfem {
 
@@ -66,6 +67,7 @@ const std::vector<Entry>& entries() {
        [](const auto& p) { return checked_perturbed_torus(p[0][0], p[1][0], p[2][0], p[3][0]); }},
       {"red_blood_cell", {}, [](const auto&) { return red_blood_cell(); }},
       {"evans_fung_cell", {}, [](const auto&) { return evans_fung_cell(); }},
+      {"angenent_torus", {{"scale", 1}}, [](const auto& p) { return angenent_torus(p[0][0]); }},
   };
   return list;
 }

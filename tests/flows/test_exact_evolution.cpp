@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/error.hpp"
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/surfaces/angenent_torus.hpp"
 
 namespace esfem {
 namespace {
@@ -50,6 +52,91 @@ TEST(StationaryEvolution, StaysWhereItIs) {
   const Field values = exact.nodal_values(x0, 7);
   EXPECT_EQ(values.leftCols(3), x0);
   EXPECT_EQ(values, exact.nodal_values(x0, 0));
+}
+
+/// Points of the self-shrinking torus with that scale.
+Field angenent_nodes(double scale) {
+  const int n = 100;
+  Field x(n, 3);
+  for (int j = 0; j < n; ++j) {
+    const Eigen::Vector2d p = scale * angenent_profile().at(j * angenent_profile().length() / n).position;
+    x.row(j) << p[0] * std::cos(j), p[0] * std::sin(j), p[1];
+  }
+  return x;
+}
+
+/// The largest |dx/dt - v| along the trajectories from x0 (central differences of order four in time).
+double deviation_of_velocity(const ExactEvolution& exact, const Field& x0, double t) {
+  const double step = 1e-3;
+  const auto x = [&](double s) -> Field { return exact.trajectories(x0, s); };
+  const Field difference =
+      (8 * (x(t + step) - x(t - step)) - (x(t + 2 * step) - x(t - 2 * step))) / (12 * step);
+  const Field v = exact.nodal_values(x(t), t).middleCols(exact.column("v"), 3);
+  return (difference - v).cwiseAbs().maxCoeff();
+}
+
+TEST(ShrinkingAngenentTorus, MovesByItsMeanCurvature) {
+  for (const double scale : {1.0, 0.8}) {
+    const ExactEvolution exact = shrinking_angenent_torus(scale);
+    const Field x0 = angenent_nodes(scale);
+    for (const double t : {0.05, 0.2, 0.5}) EXPECT_LT(deviation_of_velocity(exact, x0, t), 1e-9) << t;
+    EXPECT_LT((exact.trajectories(x0, 0) - x0).cwiseAbs().maxCoeff(), 1e-12);
+  }
+  // Particles that do not slide move with the right normal velocity, but not normally.
+  ExactEvolution scaled = shrinking_angenent_torus();
+  scaled.trajectories = [](const Field& x0, double t) -> Field { return std::sqrt(1 - t) * x0; };
+  EXPECT_GT(deviation_of_velocity(scaled, angenent_nodes(1), 0.2), 0.1);
+}
+
+TEST(ShrinkingAngenentTorus, StaysOnItsSurface) {
+  const ExactEvolution exact = shrinking_angenent_torus();
+  const Field x0 = angenent_nodes(1);
+  for (const double t : {0.0, 0.2, 0.5}) {
+    const Surface surface = exact.surface(t);
+    const Field x = exact.trajectories(x0, t);
+    for (int j = 0; j < x.rows(); ++j) EXPECT_NEAR(surface.level(x.row(j)), 0, 1e-12);
+  }
+}
+
+TEST(ShrinkingAngenentTorus, TrajectoriesArePassedOnAtAnyTime) {
+  // From 0 to 0.5 at once, or by way of 0.3: from there on the surface is a torus of scale sqrt(0.7).
+  const Field x0 = angenent_nodes(1);
+  const ExactEvolution whole = shrinking_angenent_torus(), rest = shrinking_angenent_torus(std::sqrt(0.7));
+  const Field apart = whole.trajectories(x0, 0.5) - rest.trajectories(whole.trajectories(x0, 0.3), 0.2);
+  EXPECT_LT(apart.cwiseAbs().maxCoeff(), 1e-11);
+}
+
+TEST(ShrinkingAngenentTorus, HasTheFieldsOfItsSurface) {
+  const double t = 0.3;
+  const Field on_surface = angenent_nodes(std::sqrt(1 - t));
+  const ExactEvolution exact = shrinking_angenent_torus();
+  EXPECT_LT(deviation_from_level_set(exact, exact.surface(t), on_surface), 1e-11);
+  EXPECT_GT(deviation_from_level_set(shrinking_angenent_torus(1.01), exact.surface(t), on_surface), 1e-3);
+}
+
+TEST(ShrinkingAngenentTorus, GradientOfTheVelocityIsThatOfMinusHNu) {
+  const double t = 0.3, step = 1e-5;
+  const ExactEvolution exact = shrinking_angenent_torus();
+  const Surface surface = exact.surface(t);
+  const auto v = [&](const Vec3& y) -> Vec3 { return -surface.mean_curvature(y) * surface.normal(y); };
+  Eigen::VectorXd value(exact.components());
+  Eigen::MatrixXd gradient(3, exact.components());
+  const Field x = angenent_nodes(std::sqrt(1 - t));
+  for (int j = 0; j < x.rows(); ++j) {
+    const Vec3 y = x.row(j);
+    exact.fields(t, y, surface.shape_at(y), value, gradient);
+    EXPECT_LT((value.segment<3>(3) - v(y)).norm(), 1e-11);
+    for (int i = 0; i < 3; ++i) {
+      const Vec3 next = surface.closest_point(y + step * Vec3::Unit(i)),
+                 last = surface.closest_point(y - step * Vec3::Unit(i));
+      const Vec3 slope = (v(next) - v(last)) / (2 * step);
+      EXPECT_LT((gradient.middleCols<3>(3).row(i).transpose() - slope).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(ShrinkingAngenentTorus, EndsWhereItHasShrunkToAPoint) {
+  EXPECT_THROW(shrinking_angenent_torus(0.5).surface(0.25), InputError);
 }
 
 }  // namespace

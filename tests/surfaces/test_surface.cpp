@@ -9,6 +9,7 @@
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/read.hpp"
+#include "solver/surfaces/angenent_torus.hpp"
 #include "solver/surfaces/named.hpp"
 #include "solver/surfaces/surface.hpp"
 
@@ -47,7 +48,9 @@ std::vector<Surface> all_surfaces() {
           dumbbell(),
           perturbed_torus(1, 0.6, 0.05, 3),
           red_blood_cell(),
-          evans_fung_cell()};
+          evans_fung_cell(),
+          angenent_torus(),
+          angenent_torus(0.8)};
 }
 
 TEST(Surface, ClosestPointsLieOnTheSurfaceAndAlongTheNormal) {
@@ -387,6 +390,7 @@ TEST(NamedSurface, ReadsParametersAndRefusesUnknownOnes) {
   EXPECT_EQ(named_surface({{"name", "perturbed_torus"}}).parameters.at("waves"), 3);
   EXPECT_EQ(named_surface({{"name", "red_blood_cell"}}).name, "red_blood_cell");
   EXPECT_EQ(named_surface({{"name", "evans_fung_cell"}}).name, "evans_fung_cell");
+  EXPECT_EQ(named_surface({{"name", "angenent_torus"}, {"scale", 2}}).parameters.at("scale"), 2);
   const std::vector<std::pair<nlohmann::json, std::string>> bad = {
       {{{"name", "spere"}}, "sphere, ellipsoid, torus, dumbbell"},
       {{{"name", "sphere"}, {"radios", 2}}, "unknown key \"radios\""},

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/harness/all_orders_problems.hpp"
+
+#include <cmath>
+
+#include "experiments/harness/small_steps.hpp"
+#include "solver/analysis/errors.hpp"
+#include "solver/error.hpp"
+#include "solver/flows/cahn_hilliard.hpp"
+#include "solver/flows/discrete_curvature.hpp"
+#include "solver/flows/dziuk_flow.hpp"
+#include "solver/flows/evolving_ellipsoid.hpp"
+#include "solver/flows/growing_sphere.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/flows/willmore_flow.hpp"
+#include "solver/mesh/generate.hpp"
+#include "solver/surfaces/angenent_torus.hpp"
+
+namespace esfem {
+namespace {
+
+/// The initial surface of one run, with the finite element space on it.
+struct InitialSurface {
+  Mesh mesh;
+  SurfaceSpace space;
+  InitialSurface(const Surface& surface, const Mesh& triangles, int degree)
+      : mesh(initial_mesh(
+            {}, 0, [&] { return triangles; }, surface, degree)),
+        space(mesh) {}
+};
+
+/// The self-shrinking torus, twice as many cells around the axis as along the profile, whose edges are h.
+Mesh angenent_grid(double h) {
+  const double two_pi = 2 * std::acos(-1.0), length = angenent_profile().length();
+  // Of an odd number of cells not all diagonals can alternate.
+  const int n = 2 * static_cast<int>(std::lround(length / h / 2));
+  Mesh mesh = torus_grid(2, 1, 2 * n, n);
+  for (int j = 0; j < mesh.nodes.rows(); ++j) {
+    const double x = mesh.nodes(j, 0), y = mesh.nodes(j, 1), z = mesh.nodes(j, 2), rho = std::hypot(x, y);
+    // The profile begins at the inner equator and goes upwards.
+    const double s = std::atan2(z, 2 - rho) / two_pi * length;
+    const Eigen::Vector2d p = angenent_profile().at(s).position;
+    mesh.nodes.row(j) << p[0] * x / rho, p[0] * y / rho, p[1];
+  }
+  return mesh;
+}
+
+// A problem of each flow: the flow on a mesh, its states of the exact solution, and what errors are taken of.
+// Where the exact solution is not known, `exact` says the quantities alone.
+
+/// The self-shrinking torus under (5.1).
+struct MeanCurvatureOnTorus {
+  using Flow = MeanCurvatureFlow;
+  InitialSurface on;
+  ExactEvolution exact = shrinking_angenent_torus();
+
+  MeanCurvatureOnTorus(int degree, double h, double) : on(angenent_torus(), angenent_grid(h), degree) {}
+  Flow flow() const { return {on.space, {}}; }
+  Flow::State state(double t) const { return exact_mean_curvature_state(exact, on.mesh.nodes, t); }
+  Field columns(const Flow::State& state) const { return table_columns(state); }
+};
+
+/// The same torus by Dziuk's scheme; nu and H from kappa = M^-1 A x.
+struct DziukOnTorus {
+  using Flow = DziukFlow;
+  InitialSurface on;
+  ExactEvolution exact = shrinking_angenent_torus();
+  mutable DiscreteCurvature curvature{on.space};
+
+  DziukOnTorus(int degree, double h, double) : on(angenent_torus(), angenent_grid(h), degree) {}
+  Flow flow() const { return Flow(on.space); }
+  Flow::State state(double t) const { return exact_dziuk_state(exact, on.mesh.nodes, t); }
+  Field columns(const Flow::State& state) const {
+    curvature.compute(state.x);
+    Field all(state.x.rows(), 10);
+    all << state.x, state.v, curvature.nu(), curvature.H();
+    return all;
+  }
+};
+
+struct CoupledOnSphere {
+  using Flow = CoupledDiffusion<GrowingSphereProblem>;
+  InitialSurface on;
+  ExactEvolution exact = growing_sphere();
+
+  CoupledOnSphere(int degree, double h, double) : on(sphere(1), generate_mesh(sphere(1), h), degree) {}
+  Flow flow() const {
+    const CoupledDiffusionParameters parameters;
+    return {on.space, GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised), parameters, {}};
+  }
+  Flow::State state(double t) const { return exact_growing_sphere_state(on.space, exact, on.mesh.nodes, t); }
+  Field columns(const Flow::State& state) const { return table_columns(state); }
+};
+
+/// Cahn-Hilliard on the ellipsoid, with Ritz maps as starting values, and theta.
+struct CahnHilliardOnEllipsoid {
+  using Flow = CahnHilliard<ManufacturedCahnHilliard::Problem>;
+  ManufacturedCahnHilliard manufactured{EvolvingEllipsoid{}, 0.5};
+  InitialSurface on;
+  mutable MovingNodes nodes;
+  ExactEvolution exact;
+
+  /// tau: the nodes move by steps of this size.
+  CahnHilliardOnEllipsoid(int degree, double h, double tau)
+      : on(sphere(1), generate_mesh(sphere(1), h), degree),
+        nodes(manufactured.ellipsoid().velocity(), on.mesh.nodes, tau, MovingNodes::all),
+        exact(exact_evolution(manufactured, nodes)) {}
+  CahnHilliardOnEllipsoid(const CahnHilliardOnEllipsoid&) = delete;  // `exact` refers to other members
+  Flow flow() const {
+    const Flow::State start = state(0);
+    const Field load = load_of_g(on.space, DoubleWell(), 0, start.x, start.u);
+    return {on.space, manufactured.problem(), [this](double t) -> const Field& { return nodes.at(t); },
+            manufactured.epsilon(),
+            cahn_hilliard_theta(on.space, start.x, start.u, start.w, manufactured.epsilon(), load)};
+  }
+  Flow::State state(double t) const {
+    return exact_cahn_hilliard_state(on.space, manufactured, nodes.at(t), t, StartValues::ritz);
+  }
+  Field columns(const Flow::State& state) const {
+    Field all(state.u.rows(), 2);
+    all << state.u, state.w;
+    return all;
+  }
+};
+
+Field willmore_columns(const WillmoreFlow::State& state) {
+  Field all(state.x.rows(), 11);
+  all << state.x, state.u.rightCols(3), state.u.col(0), state.w;
+  return all;
+}
+
+WillmoreFlow::Variant without_projections() {
+  WillmoreFlow::Variant variant;
+  variant.project = false;
+  return variant;
+}
+
+/// The Clifford torus, which stays as it is, with theta.
+struct WillmoreOnTorus {
+  using Flow = WillmoreFlow;
+  static constexpr double major = 1;
+  const double minor = std::sqrt(0.5);
+  ExactEvolution exact = stationary_torus(major, minor);
+  InitialSurface on;
+  WillmoreStart start;
+
+  /// h: the edges at the outer equator.
+  WillmoreOnTorus(int degree, double h, double)
+      : on(torus(major, minor), isothermal_torus_grid(major, minor, cells(h), cells(h)), degree),
+        start(willmore_start_on(on.space, exact.surface(0), on.mesh.nodes, WillmoreFlow::Variant::willmore,
+                                true)) {}
+  Flow flow() const { return {on.space, without_projections(), start.theta}; }
+  Flow::State state(double t) const {
+    Flow::State state = start.state;
+    state.t = t;
+    return state;
+  }
+  Field columns(const Flow::State& state) const { return table_columns(state); }
+
+ private:
+  int cells(double h) const {
+    const double outer_equator = 2 * std::acos(-1.0) * (major + minor);
+    return 2 * static_cast<int>(std::lround(outer_equator / h / 2));
+  }
+};
+
+/// An ellipsoid that becomes round.
+struct WillmoreOnEllipsoid {
+  using Flow = WillmoreFlow;
+  const Surface surface = ellipsoid(2, 2, 1.6);
+  ExactEvolution exact;
+  InitialSurface on;
+  WillmoreStart start;
+
+  WillmoreOnEllipsoid(int degree, double h, double)
+      : on(surface, generate_mesh(surface, h), degree),
+        start(willmore_start_on(on.space, surface, on.mesh.nodes, WillmoreFlow::Variant::willmore, false)) {
+    exact.quantities = {{"x", 3}, {"nu", 3}, {"H", 1}, {"w", 4}};
+  }
+  Flow flow() const { return {on.space, without_projections()}; }
+  const Flow::State& state(double) const { return start.state; }
+  Field columns(const Flow::State& state) const { return willmore_columns(state); }
+};
+
+/// The norms in which the errors with tau and with 2 tau are compared.
+constexpr const char* deciding_norm = "nodal_L2";
+
+/// In space errors with tau may exceed those with 2 tau, where error in time and in space cancel each other:
+/// by less than this.
+constexpr double growth_in_space = 10;
+
+/// Whether an error of the flow's quantities is larger with tau than `factor` times that with 2 tau.
+bool grows(const OrdersOfFlow& flow, const Errors& errors, const Errors& doubled, double factor) {
+  for (const std::string& quantity : flow.quantities) {
+    const double error = errors.at(quantity).at(deciding_norm);
+    if (!(error <= std::max(1e-9, factor * doubled.at(quantity).at(deciding_norm)))) return true;
+  }
+  return false;
+}
+
+/// Moves the errors to the values "<quantity>_<norm>_<reason>".
+void set_aside(const Errors& errors, const std::string& reason, Row& row) {
+  for (const auto& [quantity, norms] : errors) {
+    for (const auto& [norm, error] : norms) {
+      if (std::isfinite(error)) row.values[quantity + "_" + norm + "_" + reason] = error;
+    }
+  }
+}
+
+/// Runs `body`; a run that ends at a singularity or by other numerics is an unstable one.
+template <class Body>
+void note_instability(Row& row, Body&& body) {
+  row.values["unstable"] = 0;
+  try {
+    body();
+  } catch (const NumericsError& error) {
+    row.values["unstable"] = 1;
+    row.errors.clear();
+    row.more["ended"] = {{"why", error.what()}};
+  }
+}
+
+template <class Problem>
+typename Problem::Flow::State end_of(const Problem& problem, typename Problem::Flow& flow,
+                                     const TimeGrid& grid) {
+  using State = typename Problem::Flow::State;
+  State end;
+  integrate(
+      flow, grid, problem.state(0), [&](double t) { return problem.state(t); },
+      [&](int n, const State& state) {
+        if (n == grid.steps) end = state;
+      });
+  return end;
+}
+
+template <class Problem>
+Errors errors_at_end(const Problem& problem, double t, const Field& columns) {
+  ErrorRecorder recorder(problem.on.space, problem.exact, problem.on.mesh.nodes);
+  recorder.record(t, columns);
+  return recorder.maxima();
+}
+
+/// Errors at the end with tau, as far as they are errors in space.
+template <class Problem>
+void run_in_space(const OrderRun& run, Row& row) {
+  const double h = run.flow.edge_length(run.degree, run.level);
+  const Problem problem(run.degree, h, row.tau);
+  describe_mesh(problem.on.mesh, row);
+  note_instability(row, [&] {
+    typename Problem::Flow flow = problem.flow();
+    const double t = row.steps * row.tau;
+    const auto end = end_of(problem, flow, {run.bdf, row.tau, row.steps, {}});
+    const auto end_of_double = end_of(problem, flow, {run.bdf, 2 * row.tau, row.steps / 2, {}});
+    const Errors errors = errors_at_end(problem, t, problem.columns(end));
+    const Errors doubled = errors_at_end(problem, t, problem.columns(end_of_double));
+    if (grows(run.flow, errors, doubled, growth_in_space)) {
+      row.values["unstable"] = 1;
+      return set_aside(errors, "unstable", row);
+    }
+    LargestDifferences differences(problem.on.space, problem.exact.quantities);
+    differences.add(problem.exact.trajectories(problem.on.mesh.nodes, t),
+                    problem.columns(end) - problem.columns(end_of_double));
+    for (const auto& [quantity, norms] : errors) {
+      for (const auto& [norm, error] : norms) {
+        const std::string nodal = "nodal" + norm.substr(norm.find('_'));
+        const double by_steps = differences.errors().at(quantity).at(nodal) / (std::pow(2, run.bdf) - 1);
+        const double share = by_steps / std::max(error, 1e-300);
+        row.values[quantity + "_" + norm + "_share"] = share;
+        if (share > largest_share)
+          set_aside({{quantity, {{norm, error}}}}, "hidden", row);
+        else
+          row.errors[quantity][norm] = error;
+      }
+    }
+  });
+}
+
+/// Errors with tau and with 2 tau against small steps.
+template <class Problem>
+void run_in_time(const OrderRun& run, Row& row) {
+  using State = typename Problem::Flow::State;
+  const TimeGrid small{run.flow.flow == "dziuk" ? 3 : 5, run.flow.time.tau(run.reference_k),
+                       run.flow.time.count(run.reference_k), parse_start("cascade")};
+  const Problem problem(run.degree, run.flow.time_h.at(run.degree - 1), small.tau);
+  describe_mesh(problem.on.mesh, row);
+  note_instability(row, [&] {
+    typename Problem::Flow flow = problem.flow();
+    const SmallSteps<typename Problem::Flow> reference(flow, small, problem.state(0), {},
+                                                       static_cast<int>(std::lround(row.tau / small.tau)));
+    const auto errors = [&](double tau) {
+      LargestDifferences differences(problem.on.space, problem.exact.quantities);
+      reference.compare(run.bdf, tau, static_cast<int>(std::lround(run.flow.begin / tau)),
+                        [&](int, const State& state, const State& exact) {
+                          differences.add(exact.x, problem.columns(state) - problem.columns(exact));
+                        });
+      return differences.errors();
+    };
+    const Errors doubled = errors(2 * row.tau), single = errors(row.tau);
+    set_aside(doubled, "double", row);
+    if (grows(run.flow, single, doubled, 1)) {
+      row.values["unstable"] = 1;
+      return set_aside(single, "unstable", row);
+    }
+    row.errors = single;
+  });
+}
+
+template <class InSpace, class InTime = InSpace>
+void run_problem(const OrderRun& run, Row& row) {
+  if (run.in_time)
+    run_in_time<InTime>(run, row);
+  else
+    run_in_space<InSpace>(run, row);
+}
+
+}  // namespace
+
+const std::vector<OrdersOfFlow>& orders_of_flows() {
+  // clang-format off
+  static const std::vector<OrdersOfFlow> flows = {
+      {"mean_curvature", "self-shrinking torus", {"x", "v", "nu", "H"},
+       {0.2, 0.02}, {0.235, 0.375, 0.54, 0.63}, {3, 2, 1, 1, 1},
+       {0.2, 0.02}, 0.08, {0.63, 0.94, 1.25, 1.5}, {2, 2, 2, 2, 2},
+       113, 8e-6},
+      {"dziuk", "self-shrinking torus", {"x"},
+       {0.2, 0.02}, {0.235, 0.375, 0.54, 0.63}, {3, 2, 2, 2, 2},
+       {0.2, 0.02}, 0.08, {0.3, 0.47, 0.75, 0.94}, {3, 3, 3, 2, 2},
+       113, 4e-6},
+      {"coupled_diffusion", "growing sphere", {"x", "v", "u"},
+       {0.5, 0.1}, {0.19, 0.38, 0.57, 0.75}, {5, 4, 3, 3, 3},
+       {1, 0.1}, 0.4, {0.5, 0.8, 1.0, 1.0}, {3, 2, 3, 2, 3},
+       27.5, 3e-6},
+      {"willmore", "Clifford torus; ellipsoid", {"x", "nu", "H"},
+       {0.02, 0.01}, {0.45, 0.6, 0.75, 0.85}, {3, 3, 3, 3, 3},
+       {0.5, 0.1}, 0.1, {0.9, 1.25, 1.28, 1.28}, {4, 3, 4, 4, 5},
+       170, 8e-6},
+      {"cahn_hilliard", "evolving ellipsoid", {"u", "w"},
+       {0.2, 0.02}, {0.19, 0.38, 0.57, 0.75}, {3, 2, 2, 2, 2},
+       {1, 0.2}, 0.4, {0.5, 0.8, 1.0, 1.0}, {5, 3, 3, 3, 4},
+       27.5, 5e-6},
+  };
+  // clang-format on
+  return flows;
+}
+
+double OrdersOfFlow::edge_length(int degree, int level) const {
+  return space_h.at(degree - 1) * std::pow(2.0, -level / 2.0);
+}
+
+Row run_all_orders(const OrderRun& run, Row row) {
+  const std::string& flow = run.flow.flow;
+  if (flow == "mean_curvature")
+    run_problem<MeanCurvatureOnTorus>(run, row);
+  else if (flow == "dziuk")
+    run_problem<DziukOnTorus>(run, row);
+  else if (flow == "coupled_diffusion")
+    run_problem<CoupledOnSphere>(run, row);
+  else if (flow == "willmore")
+    run_problem<WillmoreOnTorus, WillmoreOnEllipsoid>(run, row);
+  else
+    run_problem<CahnHilliardOnEllipsoid>(run, row);
+  return row;
+}
+
+}  // namespace esfem

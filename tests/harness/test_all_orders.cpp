@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Errors against small steps, and what all_orders makes of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "experiments/harness/all_orders_problems.hpp"
+#include "experiments/harness/small_steps.hpp"
+#include "solver/analysis/claims.hpp"
+#include "solver/error.hpp"
+#include "tests/time/linear_ode.hpp"
+
+namespace esfem {
+namespace {
+
+/// Of an equation without error in space, against BDF5 with 1,024 steps.
+struct OfLinearOde : testing::Test {
+  LinearOde flow;
+  SmallSteps<LinearOde> small{flow, {5, 1.0 / 1024, 1024, {}}, LinearOde::exact(0), LinearOde::exact, 8};
+
+  /// The largest error of u from the step 8 on.
+  double error(int q, double tau) {
+    double largest = 0;
+    small.compare(q, tau, 8, [&](int, const LinearOde::State& state, const LinearOde::State& exact) {
+      EXPECT_DOUBLE_EQ(state.t, exact.t);
+      largest = std::max(largest, (state.u - exact.u).norm());
+    });
+    return largest;
+  }
+};
+
+TEST_F(OfLinearOde, ErrorsHaveTheOrderOfTheBdf) {
+  for (int q = 1; q <= 5; ++q) EXPECT_NEAR(std::log2(error(q, 1.0 / 64) / error(q, 1.0 / 128)), q, 0.2) << q;
+}
+
+TEST_F(OfLinearOde, LowerOrderOfExtrapolationShows) {
+  flow.orders_dropped = 1;
+  EXPECT_NEAR(std::log2(error(3, 1.0 / 64) / error(3, 1.0 / 128)), 2, 0.3);
+}
+
+TEST_F(OfLinearOde, EachStepFromTheFirstOnIsObserved) {
+  std::vector<int> steps;
+  small.compare(3, 1.0 / 16, 5,
+                [&](int n, const LinearOde::State&, const LinearOde::State&) { steps.push_back(n); });
+  EXPECT_THAT(steps, testing::ElementsAre(5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16));
+}
+
+TEST(LargestDifferencesTest, AreTheNormsOfTheColumnsOfAQuantity) {
+  Mesh mesh = lagrange_mesh(icosphere(1, 2), 2);
+  project_nodes(mesh, sphere(1));
+  const SurfaceSpace space(mesh);
+  LargestDifferences differences(space, {{"c", 1}, {"x", 3}});
+  const double area = 4 * std::acos(-1.0);
+  for (const double factor : {0.5, 2.0, 1.0}) {
+    Field columns(mesh.nodes.rows(), 4);
+    columns << Field::Constant(mesh.nodes.rows(), 1, 3), factor * mesh.nodes;
+    differences.add(mesh.nodes, columns);
+  }
+  EXPECT_NEAR(differences.errors().at("c").at("nodal_L2"), 3 * std::sqrt(area), 1e-3);
+  EXPECT_NEAR(differences.errors().at("c").at("nodal_H1_semi"), 0, 1e-6);
+  // |x|² = 1 and |grad x|² = 2; the largest factor is 2.
+  EXPECT_NEAR(differences.errors().at("x").at("nodal_L2"), 2 * std::sqrt(area), 1e-3);
+  EXPECT_NEAR(differences.errors().at("x").at("nodal_H1"), 2 * std::sqrt(3 * area), 1e-2);
+}
+
+OrdersOfFlow flow_named(const std::string& name) {
+  for (const OrdersOfFlow& flow : orders_of_flows()) {
+    if (flow.flow == name) return flow;
+  }
+  throw InputError("no flow " + name);
+}
+
+/// The coupled problem on 32 linear elements, its small steps 0.1 2^-7.
+Row coupled_row(int bdf, int k) {
+  const OrdersOfFlow flow = flow_named("coupled_diffusion");
+  return run_all_orders({flow, 1, bdf, true, 0, 7}, planned_row(0, flow.time, k));
+}
+
+TEST(AllOrders, OneRowOfALowerBdfSpoilsTheOrder) {
+  Claim claim;
+  claim.variable = "tau";
+  claim.quantity = "u";
+  claim.norm = "nodal_H1";
+  claim.expected = 3;
+  claim.tolerance = 0.25;
+  Table table;
+  for (const int k : {3, 4, 5}) table.rows.push_back(coupled_row(3, k));
+  EXPECT_TRUE(check_claim(claim, table).met) << check_claim(claim, table).reason;
+  EXPECT_EQ(table.rows[0].values.at("unstable"), 0);
+  // The run with 2 tau is that of the row before.
+  EXPECT_NEAR(table.rows[1].values.at("u_nodal_H1_double"), table.rows[0].errors.at("u").at("nodal_H1"),
+              1e-12);
+  table.rows[2] = coupled_row(2, 5);
+  EXPECT_FALSE(check_claim(claim, table).met);
+}
+
+/// One run in space on the coarsest mesh.
+Row row_in_space(OrdersOfFlow flow, int degree, int bdf, int k) {
+  return run_all_orders({flow, degree, bdf, false, 0, 0}, planned_row(0, flow.space, k));
+}
+
+TEST(AllOrders, ErrorsThatTheStepsMakeAreHidden) {
+  OrdersOfFlow flow = flow_named("mean_curvature");
+  flow.space_h = {0.63, 0.94};
+  const Row large = row_in_space(flow, 2, 1, 1), small = row_in_space(flow, 2, 3, 1);
+  EXPECT_GT(large.values.at("v_lifted_L2_share"), largest_share);
+  EXPECT_GT(large.values.at("v_lifted_L2_hidden"), 0);
+  EXPECT_EQ(large.errors.count("v") ? large.errors.at("v").count("lifted_L2") : 0, 0u);
+  EXPECT_LT(small.values.at("v_lifted_L2_share"), largest_share);
+  EXPECT_GT(small.errors.at("v").at("lifted_L2"), 0);
+  EXPECT_EQ(small.values.count("v_lifted_L2_hidden"), 0u);
+}
+
+TEST(AllOrders, DziuksSchemeIsUnstableWithBdf5) {
+  OrdersOfFlow flow = flow_named("dziuk");
+  flow.space_h = {0.63, 0.94};
+  EXPECT_EQ(row_in_space(flow, 2, 3, 2).values.at("unstable"), 0);
+  const Row unstable = row_in_space(flow, 2, 5, 2);
+  EXPECT_EQ(unstable.values.at("unstable"), 1);
+  EXPECT_TRUE(unstable.errors.empty());
+}
+
+}  // namespace
+}  // namespace esfem
