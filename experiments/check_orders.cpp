@@ -2,7 +2,7 @@
 // Holds tables of results against the claims in reference/<experiment>.json.
 //
 //   check_orders results/check/mcf_sphere.json
-//   check_orders results/paper/*.json --reference reference
+//   check_orders results/paper/*.json --reference reference --output results/paper/verdicts.json
 
 #include <algorithm>
 #include <cmath>
@@ -28,6 +28,10 @@ const char* const help =
     "(reproduced, but;\n"
     "not reproduced; corrected); the numbers then are this project's finding, and are checked all the "
     "same.\n\n"
+    "--output FILE writes the same as JSON: {\"schema\": \"esfem-verdicts/1\", \"tables\": "
+    "[{\"experiment\", \"paper\",\n"
+    "\"table\", \"claims\": [{\"id\", \"statement\", \"source\", \"met\", \"finding\", \"measured\", "
+    "\"expected\", \"rows_used\", ...}]}]}.\n\n"
     "Example:\n  check_orders results/check/mcf_sphere.json\n\n"
     "Exit codes: 0 all claims are met, 1 wrong usage or input, 3 a claim is not met.\n";
 
@@ -82,12 +86,34 @@ void print(const std::vector<Line>& lines) {
   }
 }
 
+/// The same for programs: "measured" and "expected" as they are printed.
+nlohmann::json to_json(const Claim& claim, const Verdict& verdict) {
+  static const char* const kinds[] = {"order", "size", "value"};
+  nlohmann::json json = {{"id", claim.id},
+                         {"statement", claim.statement},
+                         {"source", {{"paper", claim.paper}, {"place", claim.place}, {"basis", claim.basis}}},
+                         {"kind", kinds[claim.kind]},
+                         {"quantity", claim.quantity},
+                         {"met", verdict.met},
+                         {"finding", claim.finding},
+                         {"measured", measured(claim, verdict)},
+                         {"expected", expected(claim)},
+                         {"rows_used", verdict.rows_used},
+                         {"variant", claim.variant},
+                         {"reason", verdict.reason},
+                         {"remark", claim.remark}};
+  if (!claim.norm.empty()) json["norm"] = claim.norm;
+  if (!claim.variable.empty()) json["variable"] = claim.variable;
+  return json;
+}
+
 struct Count {
   int met = 0, checked = 0;
 };
 
-/// Prints the verdicts on one table. A table that no claim applies to counts as one that fails.
-Count check_table(const std::string& file, const std::string& folder) {
+/// Prints the verdicts on one table and appends them to `verdicts`. A table that no claim applies to counts
+/// as one that fails.
+Count check_table(const std::string& file, const std::string& folder, nlohmann::json& verdicts) {
   const Table table = table_from_json(read_json(file), file);
   const std::string source = folder + "/" + table.experiment + ".json";
   const Reference reference = reference_from_json(read_json(source), source);
@@ -96,6 +122,7 @@ Count check_table(const std::string& file, const std::string& folder) {
                      file + " is of " + table.experiment + " of " + table.paper);
 
   Count count;
+  nlohmann::json claims = nlohmann::json::array();
   std::vector<Line> lines = {{"verdict", "measured", "expected", "rows", "quantity", "claim", "", ""}};
   for (const Claim& claim : reference.claims) {
     if (!applies(claim, table)) continue;
@@ -103,7 +130,10 @@ Count check_table(const std::string& file, const std::string& folder) {
     ++count.checked;
     count.met += verdict.met;
     lines.push_back(describe(claim, verdict));
+    claims.push_back(to_json(claim, verdict));
   }
+  verdicts.push_back(
+      {{"experiment", table.experiment}, {"paper", table.paper}, {"table", file}, {"claims", claims}});
   std::printf("%s (%s): %s\n", table.experiment.c_str(), table.paper.c_str(), file.c_str());
   if (count.checked == 0) {
     std::printf("  NOT MET  no claim of %s applies to the preset of this table.\n\n", source.c_str());
@@ -117,17 +147,21 @@ Count check_table(const std::string& file, const std::string& folder) {
 int run(int argc, char** argv) {
   CLI::App app(help, "check_orders");
   std::vector<std::string> tables;
-  std::string folder = "reference";
+  std::string folder = "reference", output;
   app.add_option("TABLE", tables, "tables of results (JSON)")->required();
   app.add_option("--reference", folder, "folder of the claims")->capture_default_str();
+  app.add_option("--output", output, "the verdicts as JSON, beside what is printed");
   if (!parse_command_line(app, argc, argv)) return exit_done;
 
   Count total;
+  nlohmann::json verdicts = nlohmann::json::array();
   for (const std::string& file : tables) {
-    const Count count = check_table(file, folder);
+    const Count count = check_table(file, folder, verdicts);
     total.met += count.met;
     total.checked += count.checked;
   }
+  if (!output.empty())
+    write_file(output, nlohmann::json{{"schema", "esfem-verdicts/1"}, {"tables", verdicts}}.dump(1) + "\n");
   std::printf("%d of %d claims met\n", total.met, total.checked);
   return total.met == total.checked ? exit_done : exit_claim;
 }

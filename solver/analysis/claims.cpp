@@ -78,16 +78,24 @@ void read_finding(const JsonReader& reader, Claim& claim) {
     throw InputError(reader.where() + ": finding '" + claim.finding + "' needs a 'remark' that says why");
 }
 
+void read_source(const JsonReader& reader, Claim& claim) {
+  static const std::set<std::string> known = {"statement", "theory", "independent", "finding"};
+  reader.accept_only({"paper", "place", "basis"});
+  claim.paper = reader.text("paper");
+  claim.place = reader.text("place");
+  claim.basis = reader.text("basis");
+  if (known.count(claim.basis) == 0)
+    throw InputError(reader.where() + ": basis '" + claim.basis +
+                     "': expected statement, theory, independent or finding");
+}
+
 Claim claim_from_json(const Json& json, const std::string& place) {
   const std::string id = JsonReader(json, place).text("id");
   const JsonReader reader(json, place + " '" + id + "'");
   Claim claim;
   claim.id = id;
   claim.statement = reader.text("statement");
-  const JsonReader source(reader.object("source"), reader.where() + ", source");
-  source.accept_only({"paper", "place"});
-  claim.paper = source.text("paper");
-  claim.place = source.text("place");
+  read_source(JsonReader(reader.object("source"), reader.where() + ", source"), claim);
   claim.quantity = reader.text("quantity");
   if (reader.has("rows")) read_rows(reader.object("rows"), reader.where(), claim);
   if (reader.has("presets")) read_presets(reader, claim);

@@ -20,7 +20,10 @@ namespace esfem {
 struct Claim {
   enum Kind { order, size, value } kind = order;
   std::string id, statement;
-  std::string paper, place;    ///< source, e.g. "kll19", "§13.1, Fig. 13.1"
+  std::string paper, place;  ///< source, e.g. "kll19", "§13.1, Fig. 13.1"
+  /// What it rests on: "statement" (a sentence or figure of the paper), "theory" (a theorem or an identity),
+  /// "independent" (another implementation), "finding" (this project's own).
+  std::string basis;
   std::string quantity, norm;  ///< keys of Row::errors; value: quantity is a key of Row::values
   std::string variable;        ///< order: "h" | "tau"
   double expected = 0;         ///< order
@@ -38,7 +41,8 @@ struct Claim {
 };
 
 /// Contents of reference/<stem>.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
-/// {"paper", "place"}, "kind": "order" | "size" | "value", "quantity", "norm" (not of a value), "rows":
+/// {"paper", "place", "basis"}, "kind": "order" | "size" | "value", "quantity", "norm" (not of a value),
+/// "rows":
 /// {"tau", "tau_min", "tau_max", "h", "h_min", "h_max", "variant", "from_step"}, "presets": [..], ...}]};
 /// order: "variable", "expected", "tolerance", and "at_most" if wanted; size and value: "at_most" and/or
 /// "at_least". rows.tau and rows.h select one value. A claim may have "finding" and "remark".

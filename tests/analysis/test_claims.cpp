@@ -41,7 +41,7 @@ Table sample_table() {
 json order_claim() {
   return {{"id", "x-order-tau"},
           {"statement", "x converges with order 3 in tau"},
-          {"source", {{"paper", "kll19"}, {"place", "§13.1, Fig. 13.1"}}},
+          {"source", {{"paper", "kll19"}, {"place", "§13.1, Fig. 13.1"}, {"basis", "statement"}}},
           {"kind", "order"},
           {"quantity", "x"},
           {"norm", "nodal_H1"},
@@ -251,6 +251,10 @@ TEST(Claims, ReadingNamesClaimAndKey) {
               AllOf(HasSubstr("rows"), HasSubstr("'tau_mx'")));
   EXPECT_THAT(with(order_claim(), {{"rows", {{"tau", 1}, {"tau_max", 1}}}}), HasSubstr("excludes"));
   EXPECT_THAT(with(order_claim(), {{"rows", {{"h_min", 2}, {"h_max", 1}}}}), HasSubstr("no h is in"));
+  EXPECT_THAT(with(order_claim(), {{"source", {{"paper", "kll19"}, {"place", "§1"}}}}),
+              HasSubstr("'basis' is missing"));
+  EXPECT_THAT(with(order_claim(), {{"source", {{"paper", "kll19"}, {"place", "§1"}, {"basis", "hearsay"}}}}),
+              AllOf(HasSubstr("source"), HasSubstr("'hearsay'"), HasSubstr("statement, theory")));
   EXPECT_THAT(with(order_claim(), {{"kind", "slope"}}), HasSubstr("expected order, size or value"));
   EXPECT_THAT(with(order_claim(), {{"variable", "t"}}), HasSubstr("expected h or tau"));
   EXPECT_THAT(with(order_claim(), {{"tolerance", "some"}}), HasSubstr("a number"));
@@ -307,6 +311,27 @@ TEST_F(CheckOrders, ExitCodesAreTheVerdict) {
   EXPECT_EQ(exit_code("--no-such-option"), exit_usage);
   EXPECT_THAT(output(), HasSubstr("--no-such-option"));
   EXPECT_EQ(exit_code("--help"), exit_done);
+}
+
+TEST_F(CheckOrders, VerdictsGoToAFileAsWell) {
+  json corrected = order_claim(), not_met = size_claim();
+  corrected["finding"] = "corrected";
+  corrected["remark"] = "a sign";
+  not_met["at_most"] = 1e-9;
+  write_file((folder / "mcf_sphere.json").string(), reference({corrected, not_met}).dump());
+  write_file((folder / "table.json").string(), to_json(sample_table()).dump());
+  const std::string table = (folder / "table.json").string(), verdicts = (folder / "verdicts.json").string();
+  EXPECT_EQ(exit_code(table + " --output " + verdicts), exit_claim);
+  const json file = read_json(verdicts);
+  EXPECT_EQ(file.at("schema"), "esfem-verdicts/1");
+  const json& claims = file.at("tables").at(0).at("claims");
+  ASSERT_EQ(claims.size(), 2u);
+  EXPECT_EQ(claims[0].at("met"), true);
+  EXPECT_EQ(claims[0].at("finding"), "corrected");
+  EXPECT_EQ(claims[0].at("source").at("basis"), "statement");
+  EXPECT_THAT(claims[0].at("measured").get<std::string>(), HasSubstr("3.00 ["));
+  EXPECT_EQ(claims[1].at("met"), false);
+  EXPECT_THAT(claims[1].at("reason").get<std::string>(), HasSubstr("too large"));
 }
 
 }  // namespace
