@@ -156,4 +156,10 @@ std::function<double(const Vec3&)> torus_edge_length(double major, double minor,
   return radial_edge_length(major - minor, smallest, major + minor, largest);
 }
 
+std::function<double(const Vec3&)> angenent_torus_edge_length(double largest) {
+  const AngenentProfile& profile = angenent_profile();
+  return radial_edge_length(profile.at(0).position[0], largest / 2,
+                            profile.at(profile.length() / 2).position[0], largest);
+}
+
 }  // namespace esfem
