@@ -16,8 +16,11 @@
 // The nodes of BGN's scheme slide along the surface, which counts as an error of x; `distance` is that of the
 // nodes from the exact surface (root mean square), the greatest of those recorded.
 //
-// Expected: kll19 is the most accurate per second. Dziuk's scheme has order 2 in h at best where kll19 has 3
-// to 4, and BGN's order 1 in time.
+// Expected: BGN's scheme, of order 1 in time and with a system for four unknowns a node, is the least
+// accurate per second. Between the others it depends on what one asks for. Dziuk's steps take half as long.
+// Its nodes keep as near to the surface, on the sphere even nearer; but where the mesh is not that of a
+// sphere they slide, and its normals and curvatures, those of the discrete surface, are 10 to 100 times less
+// accurate.
 #include <algorithm>
 #include <cmath>
 
@@ -86,11 +89,12 @@ std::vector<Run> preset_runs(const std::string& preset) {
   };
   const bool paper = preset == "paper";
   const std::vector<int> some = paper ? range(0, 2) : range(1, 1), many = paper ? range(0, 3) : some;
-  add("kll19", 2, 3, paper ? range(0, 2) : range(0, 0), some);
-  add("dziuk", 2, 2, paper ? range(0, 2) : range(0, 0), some);
-  add("dziuk", 2, 3, paper ? range(0, 1) : range(0, 0), some);
+  const std::vector<int> two = paper ? range(0, 1) : range(0, 0), three = paper ? range(0, 2) : two;
+  add("kll19", 2, 3, three, many);
+  add("dziuk", 2, 3, three, many);
+  add("dziuk", 2, 2, two, some);
   add("bgn", 2, 1, {0}, many);
-  add("bgn", 1, 1, paper ? range(0, 1) : range(0, 0), many);
+  add("bgn", 1, 1, two, many);
   if (paper) {
     add("kll19", 2, 1, {0}, many);
     add("dziuk", 2, 1, {0}, many);
