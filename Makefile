@@ -28,31 +28,59 @@ stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
 .PHONY: help figures check bench deps configure build build-stems test format format-check samples clean distclean \
-        tables-check verdicts independent plots-check $(stems)
+        tables-check verdicts independent plots-check report report-check gallery $(stems)
 
 help:
 	@echo "make figures       install what is missing, build, run every experiment as published, draw all figures"
 	@echo "                   -> results/paper/STEM.{json,csv,tex}, figures/<paper>/fig*.{pdf,png}"
 	@echo "make check         install, build, all unit tests, every experiment at preset check, a verdict per claim"
+	@echo "make report        one page with every figure, claim and verdict, from the published results that are there"
+	@echo "                   -> report/index.html, report/report.pdf, report/verdicts.json"
 	@echo "make STEM          one experiment as published, with its figures; STEM is one of"
 	@echo "                   $(or $(stems),(none yet))"
 	@echo "make bench         ms per step and phase at growing sizes"
 	@echo "make build | test | format | format-check | deps     parts of the above"
+	@echo "make gallery       small pictures in docs/ and the headline table of README.md, from the same"
 	@echo "make clean         remove build/ and results/check/; published results and figures are kept, and used again"
-	@echo "make distclean     remove results/ and figures/ as well"
+	@echo "make distclean     remove results/, figures/ and report/ as well"
 	@echo
 	@echo "-jN                N jobs at once instead of one per core ($(cores) here)"
 	@echo 'LAUNCH="srun -n1"  what is put in front of each run: make figures -j100 LAUNCH="srun -n1"'
 	@echo "Stop it at any moment and type the same again: finished runs are kept."
 
 figures: build-stems
-	+@$(call run,paper,$(stems),all)
+	+@start=$$SECONDS
+	$(call run,paper,$(stems),all)
+	echo "== everything as published: $$((SECONDS - start)) s, compiling apart. Seconds on one core, and the dearest runs:"
+	grep -Hm1 '"seconds":' $(stems:%=results/paper/cells/%/*.json) | tr -d ',' | awk -F'[/: ]+' '
+	  { stem = $$4; sub(".json", "", $$5); of[stem] += $$NF; all += $$NF; n += 1; run[stem " " $$5] = $$NF }
+	  END { for (s in of) printf "%8.0f  %s\n", of[s], s | "sort -gr"; close("sort -gr")
+	        printf "%8.0f  %d runs in all\n", all, n
+	        for (r in run) printf "%8.0f  %s\n", run[r], r | "sort -gr | head -n 8" }'
+
+# report_of(preset, figures, folder, expected): the verdicts on the tables that are there, then the report.
+define report_of
+mkdir -p $(3); status=0
+tables=$$(ls $(stems:%=results/$(1)/%.json) 2>/dev/null || true)
+if [ -z "$$tables" ]; then echo "no tables in results/$(1): make figures, or make STEM, makes them" >&2; exit 1; fi
+$(BIN)/check_orders $$tables --output $(3)/verdicts.json >$(3)/verdicts.txt || status=$$?
+if [ $$status = 1 ] || [ $$status = 2 ]; then exit $$status; fi
+tail -n 1 $(3)/verdicts.txt
+$(PYTHON) plots/report.py $(3)/verdicts.json $(2) $(3) $(if $(4),--expect $(4))
+endef
+report: configure
+	@$(call build_targets,--target check_orders)
+	$(call report_of,paper,figures,report)
+gallery: report
+	@$(PYTHON) plots/gallery.py report/verdicts.json figures README.md docs
+report-check:
+	@$(call report_of,check,build/figures-check,build/report-check,tables)
 
 $(stems): build-stems
 	+@$(call run,paper,$@,all)
 
 # Every part of the check runs, and the end says which of them failed.
-check_parts := format-check test samples tables-check verdicts independent plots-check
+check_parts := format-check test samples tables-check verdicts independent plots-check report-check
 check: build
 	+@failed=""
 	for part in $(check_parts); do
@@ -146,7 +174,7 @@ bench: configure
 clean:
 	rm -rf build results/check
 distclean: clean
-	rm -rf results figures
+	rm -rf results figures report
 
 # run(preset, stems, goal): lists the cells of the stems, then makes the goal of cells.mk. The cells
 # depend on `.executable`, the checksum of their executable: a build that leaves it as it was outdates nothing.

@@ -23,13 +23,15 @@
 // the start apart, as u_initial and w_initial.
 //
 // Beside the published runs: BDF 2, 4 and 5; quadratic elements; the orders of BDF 1 to 5 against a solution
-// of the same discretisation with small steps.
+// of the same discretisation with small steps; the errors of d•u that Theorem 4.1 bounds, in L2 over time;
+// (8.3) as it is printed, with a load that is not multiplied by tau.
 //
 // Expected orders (Theorem 4.1 and the BDF methods): tau^q + h^k in H1, one more in h in L2. The nodal H1
 // errors, of the difference to the interpolated solution, are better than O(h): those of w least, because
 // maxima over n >= 0 contain how far Ritz maps are from interpolations. BDF5 amplifies what Ritz maps as
 // starting values are off the discrete solution (w 0.030 at tau = 0.025 on 2,491 nodes; BDF4 0.004).
 #include <cmath>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -57,7 +59,7 @@ const int smallest_step = 7;  ///< the i of the smallest published tau
 const double orders_begin = 0.4;
 
 /// The kinds of runs, as --runs names them and as rows are labelled.
-const std::vector<std::string> known_runs = {"ritz_theta", "interpolation", "order"};
+const std::vector<std::string> known_runs = {"ritz_theta", "interpolation", "order", "derivative", "printed"};
 
 /// One run of the grid: tau = 0.2 2^-i.
 struct Run {
@@ -101,14 +103,18 @@ std::vector<Run> preset_runs(const std::string& preset) {
              {"ritz_theta", 2, {4}, range(0, 2), {4}},
              {"interpolation", 1, {3}, range(0, 3), {4, 5}},
              {"order", 1, {1}, {1}, {5, 6, 7}},
-             {"order", 1, {2, 3, 4, 5}, {1}, {3, 4, 5}}};
+             {"order", 1, {2, 3, 4, 5}, {1}, {3, 4, 5}},
+             {"derivative", 1, {3}, range(1, 3), {3}},
+             {"printed", 1, {1}, {1}, {3, 4, 5}}};
   } else {
     grids = {{"ritz_theta", 1, {1}, range(1, 3), range(3, 5)},
              {"ritz_theta", 1, {3}, range(1, 3), range(2, 4)},
              {"ritz_theta", 2, {4}, range(0, 2), {4}},
              {"interpolation", 1, {3}, range(0, 3), {4}},
              {"order", 1, {1}, {0}, {5, 6, 7}},
-             {"order", 1, {2, 3, 4, 5}, {0}, {3, 4, 5}}};
+             {"order", 1, {2, 3, 4, 5}, {0}, {3, 4, 5}},
+             {"derivative", 1, {3}, range(1, 3), {3}},
+             {"printed", 1, {1}, {1}, {3, 4, 5}}};
   }
   std::vector<Run> runs;
   for (const Grid& grid : grids) grid.add_to(runs);
@@ -186,7 +192,17 @@ MovingMesh& moving_mesh(const Setting& setting, const Run& run, std::optional<Mo
   return *shared;
 }
 
-using Flow = CahnHilliard<ManufacturedCahnHilliard::Problem>;
+/// The load of the exact solution times a factor.
+struct ScaledLoad : ManufacturedCahnHilliard::Problem {
+  double factor = 1;
+
+  void b(double t, const Field& x, Field& nodal) const {
+    Problem::b(t, x, nodal);
+    nodal *= factor;
+  }
+};
+
+using Flow = CahnHilliard<ScaledLoad>;
 
 /// theta for the given start.
 Field theta_of(const SurfaceSpace& space, const State& start) {
@@ -214,18 +230,72 @@ ExactState exact_starts(MovingMesh& on, StartValues values) {
   };
 }
 
-Flow cahn_hilliard_flow(MovingMesh& on, Field theta) {
+Flow cahn_hilliard_flow(MovingMesh& on, Field theta, double factor_of_load = 1) {
+  ScaledLoad problem;
+  problem.exact = &on.exact;
+  problem.factor = factor_of_load;
   return Flow(
-      on.space, on.exact.problem(), [&on](double t) -> const Field& { return on.nodes.at(t); }, epsilon,
+      on.space, problem, [&on](double t) -> const Field& { return on.nodes.at(t); }, epsilon,
       std::move(theta));
 }
 
-/// Errors against the exact solution: maxima over n >= 0, or n >= q from interpolated starting values.
+/// d•u = -6u + v . grad u of the exact solution, its quantity u_derivative. The gradient by differences in
+/// space.
+ExactEvolution exact_derivative(MovingMesh& on) {
+  const auto value = [&on, velocity = on.exact.ellipsoid().velocity()](const Vec3& x, double t) {
+    Field v;
+    velocity(t, x.transpose(), v);
+    return -6 * on.exact.u(x, t) + std::exp(-6 * t) * (v(0, 0) * x[1] + v(0, 1) * x[0]);
+  };
+  ExactEvolution exact;
+  exact.quantities = {{"u_derivative", 1}};
+  exact.surface = [&on](double t) { return on.exact.ellipsoid().surface(t); };
+  exact.trajectories = [&on](const Field&, double t) { return on.nodes.at(t); };
+  exact.fields = [value](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& values,
+                         Eigen::MatrixXd& gradients) {
+    const double step = 1e-5;
+    Vec3 gradient;
+    for (int i = 0; i < 3; ++i)
+      gradient[i] = (value(y + step * Vec3::Unit(i), t) - value(y - step * Vec3::Unit(i), t)) / (2 * step);
+    values = Eigen::VectorXd::Constant(1, value(y, t));
+    gradients = gradient - shape.normal.dot(gradient) * shape.normal;
+  };
+  return exact;
+}
+
+/// Errors of d•u from Ritz maps with theta, where the backward differences of u stand for the derivative
+/// along the nodes: in L2 over [q tau, 1], the integrals as sums over the steps.
+void run_derivative(MovingMesh& on, const TimeGrid& grid, Row& row) {
+  const ExactState starts = exact_starts(on, StartValues::ritz);
+  const State start = starts(0);
+  Flow flow = cahn_hilliard_flow(on, theta_of(on.space, start));
+  const ExactEvolution exact = exact_derivative(on);
+  const std::vector<double> delta = bdf_delta(grid.order);
+  std::deque<Field> newest;  // first, of q + 1 steps
+  double L2 = 0, H1_semi = 0;
+  integrate(flow, grid, start, starts, [&](int n, const State& state) {
+    newest.push_front(state.u);
+    if (n < grid.order) return;
+    newest.resize(grid.order + 1);
+    Field derivative = Field::Zero(state.u.rows(), 1);
+    for (int j = 0; j <= grid.order; ++j) derivative += delta[j] / grid.tau * newest[j];
+    const SquaredNorms norms = lifted_errors(on.space, state.x, exact, state.t, derivative);
+    L2 += grid.tau * norms.L2[0];
+    H1_semi += grid.tau * norms.H1_semi[0];
+  });
+  row.errors["u_derivative"] = {{"lifted_L2", std::sqrt(L2)},
+                                {"lifted_H1", std::sqrt(L2 + H1_semi)},
+                                {"lifted_H1_semi", std::sqrt(H1_semi)}};
+}
+
+/// Errors against the exact solution: maxima over n >= 0, or n >= q from interpolated starting values. As
+/// printed the first line of (8.3) has f where it should have tau f: the load is too large by 1/tau.
 void run_convergence(MovingMesh& on, const std::string& kind, const TimeGrid& grid, Row& row) {
-  const bool ritz = kind == "ritz_theta";
+  const bool ritz = kind != "interpolation";
   const ExactState starts = exact_starts(on, ritz ? StartValues::ritz : StartValues::interpolation);
   const State start = starts(0);
-  Flow flow = cahn_hilliard_flow(on, ritz ? theta_of(on.space, start) : Field());
+  Flow flow = cahn_hilliard_flow(on, ritz ? theta_of(on.space, start) : Field(),
+                                 kind == "printed" ? 1 / grid.tau : 1);
 
   const ExactEvolution exact = exact_evolution(on.exact, on.nodes);
   ErrorRecorder errors(on.space, exact, on.mesh.nodes), initial_errors(on.space, exact, on.mesh.nodes);
@@ -311,6 +381,8 @@ Row run_cell(const Setting& setting, const Run& run, const SharedMesh& shared, R
   const TimeGrid grid{run.bdf, row.tau, row.steps, setting.start};
   if (run.kind == "order") {
     run_order(on, grid, row);
+  } else if (run.kind == "derivative") {
+    run_derivative(on, grid, row);
   } else {
     run_convergence(on, run.kind, grid, row);
   }
@@ -354,7 +426,7 @@ nlohmann::json parameters(const Setting& setting, const std::string& preset) {
           {"start", to_string(setting.start)},
           {"quadrature", setting.quadrature.empty() ? "that of the degree" : setting.quadrature},
           {"tau_of_the_nodes", time_steps.tau(setting.smallest) / setting.start.substeps_per_step},
-          {"errors", "maxima over n >= 0; interpolation: over n >= q"},
+          {"errors", "maxima over n >= 0; interpolation: over n >= q; u_derivative: L2 over time, n >= q"},
           {"meshes", mesh_parameter(setting.meshes, "generated, edge length 0.84 2^-level")}};
 }
 
@@ -377,10 +449,11 @@ int main(int argc, char** argv) {
       "combinations, where not given ritz_theta, linear elements, BDF3, level 1, i = 2..5.\n\n"
       "Example: cahn_hilliard_ellipsoid --bdf 3 --levels 0-2 --steps 2-4 --output table.json";
   experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--runs", known_runs,
-                     "ritz_theta: Ritz maps and theta | interpolation: interpolated u, no theta | order: "
-                     "errors against small steps",
-                     own.runs);
+    add_names_option(
+        app, "--runs", known_runs,
+        "ritz_theta: Ritz maps and theta | interpolation: interpolated u, no theta | order: "
+        "errors against small steps | derivative: errors of d•u | printed: (8.3) without tau before its load",
+        own.runs);
     add_quadrature_option(app, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };

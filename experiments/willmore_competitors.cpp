@@ -15,7 +15,8 @@
 // the same meshes, with elements of degree 1 and 2 (the theory of kll21 begins with 2). nu and H of the older
 // schemes, which have none or only H, are those of the discrete surface. The nodes of Dziuk's scheme and of
 // BGN's move along the surface, which counts as an error of x; `distance` is that of the nodes from the exact
-// surface. Energies are recorded 50 times a run.
+// surface. Energies are recorded 50 times a run. Linear elements on the sphere also on finer meshes: do the
+// schemes converge?
 //
 // Expected: the older schemes move to a discrete surface of smaller discrete energy, kll21 stays where it is,
 // nearer by a factor of 100 and more. Dziuk's scheme with elements of degree 2 needs tau <= h²/1000 or less,
@@ -122,6 +123,7 @@ std::vector<Run> preset_runs(const std::string& preset) {
     add("clifford_torus", all, 1, 5);
     add("clifford_torus", all, 2, 5);
     add("clifford_torus", all, 2, 0);
+    add_runs({"sphere"}, all, {1}, range(0, 2), {2}, runs);  // whether the schemes converge
   } else {
     add("clifford_torus", kll21, 2, 3);
   }

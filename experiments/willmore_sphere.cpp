@@ -17,7 +17,8 @@
 // (3.7), and after each step without and with projections of nu_h and z_h.
 //
 // Beside the published runs: with theta and projections the discrete sphere is stationary, too. The growth
-// of errors without projections on spheres of radius 1 and 1.5, until t = R⁴.
+// of errors without projections on spheres of radius 1 and 1.5, until t = R⁴. Surface diffusion (1.2), which
+// leaves the sphere as it is, too.
 //
 // Expected orders (Theorem 4.1): h² in L^infinity(H1) for x, nu and H. There is no error in time. Without
 // projections errors grow like exp(8t/R⁴).
@@ -42,9 +43,11 @@ const double energy_of_spheres = 8 * std::acos(-1.0);
 
 /// The kinds of runs, as --runs names them and as rows are labelled, and the edge lengths of their level 0 on
 /// the unit sphere.
-const std::map<std::string, double> largest_h = {
-    {"convergence", 0.55}, {"normals", 0.24}, {"accuracy", 0.21}, {"theta", 0.55}, {"growth", 0.28}};
-const std::vector<std::string> known_runs = {"convergence", "normals", "accuracy", "theta", "growth"};
+const std::map<std::string, double> largest_h = {{"convergence", 0.55}, {"normals", 0.24},
+                                                 {"accuracy", 0.21},    {"theta", 0.55},
+                                                 {"growth", 0.28},      {"surface_diffusion", 0.55}};
+const std::vector<std::string> known_runs = {"convergence", "normals", "accuracy",
+                                             "theta",       "growth",  "surface_diffusion"};
 const std::vector<std::string> known_projections = {"none", "projected"};
 
 /// One run of the grid.
@@ -91,6 +94,7 @@ std::vector<Run> preset_runs(const std::string& preset) {
   add_runs("accuracy", {"projected"}, {0}, {2}, runs);
   add_runs("theta", {"projected"}, {0, 1}, {2}, runs);
   add_runs("growth", {"none"}, {0}, {4}, runs);
+  add_runs("surface_diffusion", {"none"}, range(0, paper ? 3 : 2), {2}, runs);
   return runs;
 }
 
@@ -174,6 +178,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row) {
   StationaryWillmore flow;
   flow.variant.project = run.projection == "projected";
   flow.theta = run.kind == "theta";
+  if (run.kind == "surface_diffusion") flow.variant.law = WillmoreFlow::Variant::surface_diffusion;
   flow.grid = {setting.bdf, row.tau, row.steps, setting.start};
   const bool with_normals = run.kind == "normals" || run.kind == "growth";
   const auto observe = [&](const State& state) {
@@ -249,7 +254,7 @@ int main(int argc, char** argv) {
     add_names_option(app, "--runs", known_runs,
                      "convergence: Figures 7.1, 7.3 | normals: Figure 7.2 | accuracy: as convergence, about "
                      "2,500 nodes | theta: with the correction (3.7) | growth: of errors until R⁴, R = 1, "
-                     "1.5",
+                     "1.5 | surface_diffusion: instead of Willmore flow",
                      own.runs);
     add_names_option(app, "--projection", known_projections, "of nu_h and z_h after each step",
                      own.projections);

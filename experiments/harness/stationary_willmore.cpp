@@ -1,12 +1,82 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/harness/stationary_willmore.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/discrete_curvature.hpp"
+#include "solver/linalg/sparse_cholesky.hpp"
 
 namespace esfem {
+
+namespace {
+
+/// v, V and z side by side, N x 7.
+Field velocity_columns(const WillmoreFlow::State& state) {
+  Field columns(state.x.rows(), 7);
+  columns << state.v, state.w;
+  return columns;
+}
+
+/// The nodal norms of e for the columns from first on.
+std::map<std::string, double> norms_of(const SquaredNorms& norms, int first, int count) {
+  const double L2 = norms.L2.segment(first, count).sum();
+  const double H1_semi = std::max(0.0, norms.H1_semi.segment(first, count).sum());
+  return {{"nodal_L2", std::sqrt(L2)},
+          {"nodal_H1", std::sqrt(L2 + H1_semi)},
+          {"nodal_H1_semi", std::sqrt(H1_semi)}};
+}
+
+/// Nodal errors of v, V and z on a surface at rest, whose matrices do not change: maxima over time.
+class VelocityErrors {
+ public:
+  VelocityErrors(const SurfaceSpace& space, const WillmoreFlow::State& exact)
+      : exact_(velocity_columns(exact)), M_(space.matrix()), A_(space.matrix()) {
+    space.assemble(exact.x, M_, A_);
+  }
+
+  void record(const WillmoreFlow::State& state) {
+    const SquaredNorms norms = nodal_norms(M_, A_, velocity_columns(state) - exact_);
+    raise("v", norms_of(norms, 0, 3));
+    raise("V", norms_of(norms, 3, 1));
+    raise("z", norms_of(norms, 4, 3));
+  }
+  const Errors& maxima() const { return maxima_; }
+
+  /// Errors of V and z from (3.5b) at the start, M^-1 theta, also in the dual norm of kll21 §5.4, in which
+  /// the square of e is (M e)ᵀ (M + A)^-1 M e.
+  Errors of_start(const SurfaceSpace& space, const Field& theta) const {
+    SparseCholesky cholesky(space.pattern());
+    Field e = theta, dual = theta;
+    cholesky.factorise(1, M_, 0, A_);
+    cholesky.solve(e);
+    cholesky.factorise(1, M_, 1, A_);
+    cholesky.solve(dual);
+    const SquaredNorms norms = nodal_norms(M_, A_, e);
+    Errors errors = {{"V_initial", norms_of(norms, 0, 1)}, {"z_initial", norms_of(norms, 1, 3)}};
+    const Eigen::VectorXd squares = theta.cwiseProduct(dual).colwise().sum();
+    errors["V_initial"]["nodal_dual"] = std::sqrt(std::max(0.0, squares[0]));
+    errors["z_initial"]["nodal_dual"] = std::sqrt(std::max(0.0, squares.tail(3).sum()));
+    return errors;
+  }
+
+ private:
+  void raise(const std::string& quantity, const std::map<std::string, double>& norms) {
+    for (const auto& [norm, value] : norms) {
+      double& most = maxima_[quantity][norm];
+      most = std::max(most, value);
+    }
+  }
+
+  Field exact_;
+  SymmetricMatrix M_, A_;
+  Errors maxima_;
+};
+
+}  // namespace
 
 void run_stationary_willmore(const SurfaceSpace& space, const Mesh& mesh, const ExactEvolution& exact,
                              const StationaryWillmore& setting, double exact_energy,
@@ -21,9 +91,11 @@ void run_stationary_willmore(const SurfaceSpace& space, const Mesh& mesh, const 
     return state;
   };
   ErrorRecorder errors(space, exact, mesh.nodes);
+  VelocityErrors velocity_errors(space, start.state);
   State last;
   const auto record = [&](int, const State& state) {
     errors.record(state.t, table_columns(state));
+    velocity_errors.record(state);
     if (observe) observe(state);
     last = state;
   };
@@ -33,8 +105,11 @@ void run_stationary_willmore(const SurfaceSpace& space, const Mesh& mesh, const 
     row.status = singularity.what();
   }
   row.errors = errors.maxima();
+  row.errors.insert(velocity_errors.maxima().begin(), velocity_errors.maxima().end());
+  row.errors.merge(velocity_errors.of_start(space, start.theta));
   for (const auto& [name, values] : errors.series()) row.series[name] = values;
   record_energies(space, last, exact_energy, row);
+  row.errors["energy"]["excess"] = std::abs(row.values["willmore_excess"]);
   row.values["end_time"] = last.t;
 }
 

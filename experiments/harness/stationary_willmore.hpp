@@ -22,8 +22,11 @@ struct StationaryWillmore {
 using WillmoreObserver = std::function<void(const WillmoreFlow::State&)>;
 
 /// Runs from exact values of x, nu, H, V and z, observes each state (unless `observe` is empty), and fills in
-/// the row: errors of x, nu and H and their series; the values of `record_energies`; "end_time", the time of
-/// the last state; the status of a run that ends at a singularity. A NumericsError passes through.
+/// the row: errors of x, nu and H and their series; nodal errors of v, V and z; those of V and z as (3.5b)
+/// gives them at the start, "V_initial" and "z_initial", also in the dual norm of §5.4, "nodal_dual"; the
+/// values of `record_energies`, and how far the energy is off as an error, "energy", "excess"; "end_time",
+/// the time of the last state; the status of a run that ends at a singularity. A NumericsError passes
+/// through.
 void run_stationary_willmore(const SurfaceSpace& space, const Mesh& mesh, const ExactEvolution& exact,
                              const StationaryWillmore& setting, double exact_energy,
                              const WillmoreObserver& observe, Row& row);

@@ -19,23 +19,28 @@ SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const
                            double t, const Field& w) {
   const int components = exact.components();
   const ShapeTable shapes = shape_functions(space.degree(), space.quadrature().points);
-  // One column a point: what a sum over the nodes runs through.
-  const Eigen::MatrixXd values = shapes.value.transpose(), dxi = shapes.dxi.transpose(),
-                        deta = shapes.deta.transpose();
-  const int nodes = static_cast<int>(values.rows());
-  Eigen::MatrixXd local(nodes, components);
+  const int points = static_cast<int>(shapes.value.rows()), nodes = static_cast<int>(shapes.value.cols());
+  // Nodal values of an element -> values and reference derivatives in its points: three rows a point.
+  Eigen::MatrixXd to_points(3 * points, nodes);
+  for (int q = 0; q < points; ++q) {
+    to_points.row(3 * q) = shapes.value.row(q);
+    to_points.row(3 * q + 1) = shapes.dxi.row(q);
+    to_points.row(3 * q + 2) = shapes.deta.row(q);
+  }
+  Eigen::MatrixXd local(nodes, components), at_points(3 * points, components);
   Eigen::VectorXd exact_value(components);
   Eigen::MatrixXd exact_gradient(3, components);
   SquaredNorms norms{Eigen::VectorXd::Zero(components), Eigen::VectorXd::Zero(components)};
   visit_lifted_points(space, x_star, exact.surface(t), [&](const LiftedPoint& point) {
-    if (point.q == 0)
+    if (point.q == 0) {
       for (int i = 0; i < nodes; ++i) local.row(i) = w.row(space.elements()(point.element, i));
+      at_points.noalias() = to_points.lazyProduct(local);
+    }
     exact.fields(t, point.y, point.shape, exact_value, exact_gradient);
     for (int l = 0; l < components; ++l) {
-      const auto nodal = local.col(l);
-      const double e = values.col(point.q).dot(nodal) - exact_value[l];
-      const Vec3 e_gradient = point.dual.col(0) * dxi.col(point.q).dot(nodal) +
-                              point.dual.col(1) * deta.col(point.q).dot(nodal) - exact_gradient.col(l);
+      const double* w_l = &at_points(3 * point.q, l);
+      const double e = w_l[0] - exact_value[l];
+      const Vec3 e_gradient = point.dual.col(0) * w_l[1] + point.dual.col(1) * w_l[2] - exact_gradient.col(l);
       norms.L2[l] += point.dA * e * e;
       norms.H1_semi[l] += point.dA * e_gradient.squaredNorm();
     }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The programs cahn_hilliard_energy and cahn_hilliard_initial_values on coarse meshes.
+// The programs cahn_hilliard_energy, cahn_hilliard_initial_values and cahn_hilliard_ellipsoid on coarse
+// meshes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -45,9 +47,34 @@ TEST_F(Programs, TheEnergyRisesWithTheSurfaceAndTheMassStays) {
     EXPECT_GT(row.values.at("first_maximum_time"), 0.005);
     EXPECT_LT(row.values.at("first_maximum_time"), 0.015);
     EXPECT_EQ(row.values.count("first_minimum_time"), 0u) << "beyond the end";
+    EXPECT_NEAR(row.values.at("variation"), 1, 1e-6);
+    EXPECT_GT(std::abs(row.values.at("variation_as_printed") - 1), 1) << "energy without epsilon";
   }
   EXPECT_EQ(table.rows[0].nodes, 54);
   EXPECT_EQ(table.rows[1].nodes, 120);
+}
+
+TEST_F(Programs, TheDerivativeOfUConvergesLikeUAndItsGradientLikeH) {
+  const Table table = table_of("cahn_hilliard_ellipsoid --runs derivative --levels 1,2 --steps 3");
+  ASSERT_EQ(table.rows.size(), 2u);
+  const auto order = [&](const char* norm) {
+    const auto error = [&](const Row& row) { return row.errors.at("u_derivative").at(norm); };
+    return std::log(error(table.rows[0]) / error(table.rows[1])) /
+           std::log(table.rows[0].h / table.rows[1].h);
+  };
+  EXPECT_GT(order("lifted_L2"), 1.7);
+  EXPECT_GT(order("lifted_H1_semi"), 0.9);
+  EXPECT_LT(order("lifted_H1_semi"), 1.4);
+}
+
+TEST_F(Programs, TheLoadAsPrintedIsTooLarge) {
+  const auto error = [&](const std::string& runs) {
+    return table_of("cahn_hilliard_ellipsoid --bdf 1 --levels 0 --steps 3 --runs " + runs)
+        .rows.at(0)
+        .errors.at("u")
+        .at("nodal_L2");
+  };
+  EXPECT_GT(error("printed"), 3 * error("ritz_theta"));
 }
 
 TEST_F(Programs, RefuseStartingValuesThatNobodyKnows) {

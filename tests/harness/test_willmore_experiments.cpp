@@ -43,12 +43,44 @@ TEST_F(StationarySphere, StaysAsItIsWithThetaAlone) {
   const Row with_theta = run();
   setting.theta = false;
   const Row without = run();
-  for (const char* quantity : {"x", "nu", "H"}) {
+  for (const char* quantity : {"x", "nu", "H", "v", "V", "z"}) {
     EXPECT_LT(with_theta.errors.at(quantity).at("nodal_H1"), 1e-11) << quantity;
     EXPECT_GT(without.errors.at(quantity).at("nodal_H1"), 1e-6) << quantity;
   }
   EXPECT_EQ(with_theta.status, "ok");
   EXPECT_DOUBLE_EQ(with_theta.values.at("end_time"), 0.5);
+}
+
+// What (3.5b) gives at the start is off z = 0 without theta; V = 0 it meets, since H is constant.
+TEST_F(StationarySphere, SaysHowFarTheInitialVelocityIsOff) {
+  const Errors errors = run().errors;
+  EXPECT_LT(errors.at("V_initial").at("nodal_H1"), 1e-10);
+  const std::map<std::string, double>& z = errors.at("z_initial");
+  const Surface exact = sphere(1);
+  const Field without = willmore_start_on(space, exact, mesh.nodes, setting.variant.law, false).state.w;
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(mesh.nodes, M, A);
+  const Field of_z = without.rightCols(3), M_z = M * of_z, A_z = A * of_z;
+  const double L2 = of_z.cwiseProduct(M_z).sum(), H1_semi = of_z.cwiseProduct(A_z).sum();
+  EXPECT_NEAR(z.at("nodal_L2"), std::sqrt(L2), 1e-10 * std::sqrt(L2));
+  EXPECT_NEAR(z.at("nodal_H1"), std::sqrt(L2 + H1_semi), 1e-10 * std::sqrt(H1_semi));
+  // Cauchy-Schwarz: |e|² <= |e|_dual |e|_H1, and the dual norm is the smallest.
+  EXPECT_GE(z.at("nodal_dual") * z.at("nodal_H1"), L2 * (1 - 1e-10));
+  EXPECT_LT(z.at("nodal_dual"), z.at("nodal_L2"));
+}
+
+TEST_F(StationarySphere, HasTheErrorOfItsEnergy) {
+  const Row row = run();
+  EXPECT_DOUBLE_EQ(row.errors.at("energy").at("excess"), std::abs(row.values.at("willmore_excess")));
+}
+
+// H and with it V do not depend on nu_h then.
+TEST_F(StationarySphere, StaysUnderSurfaceDiffusionWhileTheNormalIsOff) {
+  setting.variant.law = WillmoreFlow::Variant::surface_diffusion;
+  const Errors errors = run().errors;
+  for (const char* quantity : {"x", "H", "v", "V"})
+    EXPECT_LT(errors.at(quantity).at("nodal_H1"), 1e-11) << quantity;
+  for (const char* quantity : {"nu", "z"}) EXPECT_GT(errors.at(quantity).at("nodal_H1"), 1e-6) << quantity;
 }
 
 TEST_F(StationarySphere, IsObservedInEachStep) {

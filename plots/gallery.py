@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What of the results is kept with the sources: small pictures in docs/ and the headline table of README.md.
+
+Usage: python3 plots/gallery.py VERDICTS FIGURES README DOCS
+Copies figures that the README shows, made small, and writes the table between the two headline marks of the README
+anew from VERDICTS (check_orders --output).
+"""
+import os
+import re
+import sys
+
+from report_content import PAPERS
+from report_data import counts, place, read_results
+from report_html import small_png
+from table import TableError
+
+PICTURES = ("kll19/fig13_1", "kll19/fig13_3", "kll21/fig7_5", "gallery/willmore_relaxation", "bk22/fig6", "gallery/all_orders",
+            "gallery/mcf_angenent_torus", "gallery/mcf_competitors", "gallery/tumour_growth", "pfhub/fig1d")
+WIDTH = 1000  # pixels
+COLUMNS = ("reproduced", "reproduced, but", "corrected", "not reproduced", "claim not met")
+MARKS = ("<!-- headline: written by make gallery -->", "<!-- end of headline -->")
+
+
+def headline(results):
+    """Statements of each paper by verdict, as a table in Markdown. A column that is empty is left out."""
+    placed = place(results)
+    rows = []
+    for key, name in [(paper.key, f"{paper.name} ({paper.key})") for paper in PAPERS] + [("beyond", "beyond the papers")]:
+        statements = [statement for (section, _), group in placed.items() if section == key for statement in group]
+        published, others = counts(statements)
+        hold, number = (sum(pair[i] for pair in others.values()) for i in (0, 1))
+        rows.append([name, *(str(published[column] or "–") for column in COLUMNS), f"{hold} of {number}" if number else "–",
+                     str(sum(len(statement.claims) for statement in statements))])
+    heads = ["statements of", *COLUMNS, "own findings and independent values met", "checks"]
+    kept = [i for i in range(len(heads)) if heads[i] != "claim not met" or any(row[i] != "–" for row in rows)]
+    lines = [[line[i] for i in kept] for line in [heads, ["---"] * len(heads), *rows]]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def with_headline(readme, table):
+    """The README's text with the table between its marks. Raises TableError when these are not there, once each."""
+    if any(readme.count(mark) != 1 for mark in MARKS):
+        raise TableError(f"README: expected once each: {' and '.join(MARKS)}")
+    return re.sub(f"{MARKS[0]}.*{MARKS[1]}", lambda _: f"{MARKS[0]}\n{table}\n{MARKS[1]}", readme, flags=re.DOTALL)
+
+
+def main():
+    if len(sys.argv) != 5:
+        sys.exit(__doc__.strip())
+    verdicts, figures, readme, docs = sys.argv[1:]
+    try:
+        with open(readme, encoding="utf-8") as file:
+            text = with_headline(file.read(), headline(read_results(verdicts, "reference")))
+        for name in PICTURES:
+            with open(os.path.join(docs, os.path.basename(name) + ".png"), "wb") as file:
+                file.write(small_png(os.path.join(figures, name + ".png"), WIDTH))
+        with open(readme, "w", encoding="utf-8") as file:
+            file.write(text)
+    except (TableError, OSError) as error:
+        sys.exit(f"{os.path.basename(sys.argv[0])}: {error}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the report is made from: tables, verdicts on claims, and which claim belongs to which figure."""
+import glob
+import json
+import os
+import re
+from dataclasses import dataclass, field
+
+from report_content import BEYOND, PAPERS
+from table import SCHEMA, TableError
+
+VERDICT_SCHEMA = "esfem-verdicts/1"
+# In the order of lists.
+SEVERITY = ("claim not met", "not reproduced", "corrected", "reproduced, but", "reproduced", "holds")
+BEYOND_STEMS = tuple(figure.stem for figure in BEYOND)
+PAPER_KEYS = tuple(paper.key for paper in PAPERS)
+
+
+@dataclass
+class Statement:
+    """A statement and the checks that it is held to, all of one table."""
+    stem: str
+    claims: list
+
+    @property
+    def first(self):
+        return self.claims[0]
+
+    @property
+    def source(self):
+        return self.first["source"]
+
+    @property
+    def verdict(self):
+        """That of its checks; reproduced in some settings and not in others is "reproduced, but"."""
+        found = {verdict(claim) for claim in self.claims}
+        for decisive in ("claim not met", "corrected"):
+            if decisive in found:
+                return decisive
+        return found.pop() if len(found) == 1 else "reproduced, but"
+
+    @property
+    def figures(self):
+        """Numbers of the paper's figures that its place names: "Figs. 2 and 4" are 2 and 4."""
+        named = re.search(r"Figs?\. ([\d.]+\d|\d)((?:(?:, | and )[\d.]*\d)*)", self.source["place"])
+        return re.findall(r"\d+(?:\.\d+)?", named[0]) if named else []
+
+    @property
+    def is_published(self):
+        return self.source["basis"] in ("statement", "theory")
+
+
+@dataclass
+class Results:
+    """Tables and statements by stem; claims that this preset does not check; files that are not there."""
+    tables: dict = field(default_factory=dict)
+    statements: list = field(default_factory=list)
+    elsewhere: int = 0
+    missing: list = field(default_factory=list)
+
+
+def verdict(claim):
+    """In the words of the report. Findings and independent values, which no paper states, hold or do not."""
+    if not claim["met"]:
+        return "claim not met"
+    if claim["finding"]:
+        return claim["finding"]
+    return "reproduced" if claim["source"]["basis"] in ("statement", "theory") else "holds"
+
+
+def read_json(path):
+    """The JSON in a file. Raises TableError."""
+    try:
+        with open(path, encoding="utf-8") as file:
+            return json.load(file)
+    except (OSError, ValueError) as error:
+        raise TableError(f"{path}: {error}") from error
+
+
+def read_results(path, reference):
+    """The verdicts in a file with the tables they are about, and what of reference/*.json has none. Raises TableError."""
+    results = Results()
+    verdicts = read_json(path)
+    if not isinstance(verdicts, dict) or verdicts.get("schema") != VERDICT_SCHEMA:
+        raise TableError(f'{path}: expected schema "{VERDICT_SCHEMA}"')
+    for entry in verdicts["tables"]:
+        table = read_json(entry["table"])
+        if table.get("schema") != SCHEMA:
+            raise TableError(f'{entry["table"]}: schema is {table.get("schema")!r}, expected "{SCHEMA}"')
+        results.tables[entry["experiment"]] = table
+        results.statements += grouped(entry["experiment"], entry["claims"])
+    for path in sorted(glob.glob(os.path.join(reference, "*.json"))):
+        stem = os.path.splitext(os.path.basename(path))[0]
+        claims = read_json(path)["claims"]
+        if stem not in results.tables:
+            results.missing.append(f"results of {stem} ({len(claims)} claims)")
+        else:
+            results.elsewhere += len(claims) - sum(len(statement.claims) for statement in results.statements
+                                                   if statement.stem == stem)
+    return results
+
+
+def grouped(stem, claims):
+    """Claims with the same words and the same source are checks of one statement."""
+    groups = {}
+    for claim in claims:
+        key = (claim["statement"], claim["source"]["paper"], claim["source"]["place"], claim["source"]["basis"])
+        groups.setdefault(key, []).append(claim)
+    return [Statement(stem, group) for group in groups.values()]
+
+
+def place(results):
+    """{(section, key): statements}: ("kll19", "13.1") for a figure, ("kll19", "") for theorems and text,
+    ("kll19", stem) for findings and independent values, ("beyond", stem) for what no paper has.
+
+    Raises TableError for a statement of a source that the report does not know.
+    """
+    placed = {}
+    numbers = {paper.key: [figure.number for figure in paper.figures] for paper in PAPERS}
+    for statement in results.statements:
+        section = statement.source["paper"]
+        if section not in PAPER_KEYS:
+            section = results.tables[statement.stem]["paper"]
+        if section not in PAPER_KEYS or (not statement.is_published and statement.stem in BEYOND_STEMS):
+            if statement.stem not in BEYOND_STEMS and section not in PAPER_KEYS:
+                raise TableError(f"no place in the report for the claims of {statement.stem}: see report_content.py")
+            section, key = "beyond", statement.stem
+        else:
+            known = [number for number in statement.figures if number in numbers[section]]
+            key = known[0] if known else "" if statement.is_published else statement.stem
+        placed.setdefault((section, key), []).append(statement)
+    return placed
+
+
+def counts(statements):
+    """{verdict: number of statements}, for published ones; and for the others {basis: (that hold, all)}."""
+    published = {name: sum(s.verdict == name for s in statements if s.is_published) for name in SEVERITY}
+    others = {}
+    for statement in statements:
+        if not statement.is_published:
+            hold, number = others.get(statement.source["basis"], (0, 0))
+            others[statement.source["basis"]] = (hold + (statement.verdict != "claim not met"), number + 1)
+    return published, others

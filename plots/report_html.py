@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""HTML of the report: escaped text with mathematical signs, tables, pictures inside the page."""
+import base64
+import html
+import io
+import re
+
+from PIL import Image
+
+from report_content import SYMBOLS
+
+SCREEN_WIDTH = 1340  # pixels of a picture at most: 17 cm at 200 dpi
+
+
+def text(words):
+    """A sentence of a claim as HTML: Greek letters by name, h^2, x_h and >= become signs."""
+    escaped = html.escape(words, quote=False)
+    escaped = escaped.replace("&gt;=", "≥").replace("&lt;=", "≤")
+    escaped = re.sub(r"\b(" + "|".join(SYMBOLS) + r")(?=\b|_|\d)", lambda match: SYMBOLS[match[1]], escaped)
+    escaped = re.sub(r"\^(\([^()]*\)|-?[\w∞]+)", lambda match: f"<sup>{match[1].strip('()')}</sup>", escaped)
+    return re.sub(r"(?<=[A-Za-zͰ-Ͽ|])_([a-zA-Z0-9]{1,2})\b", r"<sub>\1</sub>", escaped)
+
+
+def number(value):
+    """A number of a table, short."""
+    if value is None:
+        return ""
+    if isinstance(value, float):
+        return f"{value:.3g}".replace("e-0", "e-").replace("e+0", "e+")
+    return html.escape(str(value))
+
+
+def tag(name, content, **attributes):
+    """<name attributes>content</name>; class_ is class."""
+    given = "".join(f' {key.rstrip("_")}="{html.escape(str(value))}"' for key, value in attributes.items())
+    return f"<{name}{given}>{content}</{name}>"
+
+
+def table(heads, rows, class_=""):
+    """A table; heads and cells are HTML. A row may be (class, cells)."""
+    head = "".join(tag("th", cell) for cell in heads)
+    body = []
+    for row in rows:
+        kind, cells = row if isinstance(row, tuple) else ("", row)
+        body.append(tag("tr", "".join(tag("td", cell) for cell in cells), class_=kind))
+    return tag("table", tag("thead", tag("tr", head)) + tag("tbody", "\n".join(body)), class_=class_)
+
+
+def small_png(path, width=SCREEN_WIDTH):
+    """The picture in `path` as bytes of a PNG with at most 256 colours, at most `width` pixels wide."""
+    with Image.open(path) as image:
+        picture = image.convert("RGB")
+        if picture.width > width:
+            picture = picture.resize((width, round(picture.height * width / picture.width)), Image.LANCZOS)
+        picture = picture.quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+        stream = io.BytesIO()
+        picture.save(stream, "PNG", optimize=True)
+    return stream.getvalue()
+
+
+def picture(path, alternative):
+    """The picture as a part of the page."""
+    data = base64.b64encode(small_png(path)).decode("ascii")
+    return f'<img alt="{html.escape(alternative)}" src="data:image/png;base64,{data}">'

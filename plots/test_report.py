@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tests of the report and of the gallery that is made from it."""
+import html.parser
+import io
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from matplotlib.figure import Figure
+from PIL import Image
+
+import gallery
+import report
+import style
+from report_data import Statement, grouped, place, read_results, verdict
+from report_export import exports
+from report_html import small_png, text
+from table import TableError
+from testing import FOLDER, synthetic_table
+
+
+def claim(name, basis="statement", where="§13.1, Fig. 13.1", paper="kll19", **changes):
+    """A verdict as check_orders writes it."""
+    made = {"id": name, "statement": f"statement of {name}", "source": {"paper": paper, "place": where, "basis": basis},
+            "kind": "order", "quantity": "x", "norm": "nodal_H1", "variable": "tau", "met": True, "finding": "",
+            "measured": "2.95 [2.79, 3.11]", "expected": ">= 2.5", "rows_used": 30, "variant": "flow=mean_curvature",
+            "reason": "", "remark": ""}
+    return made | changes
+
+
+class Words(unittest.TestCase):
+    def test_mathematics(self):
+        self.assertEqual(text("O(tau^3) for |nu_h| >= 1 & h^2"),
+                         "O(τ<sup>3</sup>) for |ν<sub>h</sub>| ≥ 1 &amp; h<sup>2</sup>")
+        self.assertEqual(text("small_ellipsoid, (3.4) of number"), "small_ellipsoid, (3.4) of number")
+        self.assertEqual(text("Gamma_h, order q <= 5"), "Γ<sub>h</sub>, order q ≤ 5")
+
+    def test_verdicts(self):
+        self.assertEqual(verdict(claim("a")), "reproduced")
+        self.assertEqual(verdict(claim("a", "finding")), "holds")
+        self.assertEqual(verdict(claim("a", finding="corrected")), "corrected")
+        self.assertEqual(verdict(claim("a", finding="corrected", met=False)), "claim not met")
+
+    def verdict_of(self, *claims):
+        return Statement("mcf_sphere", list(claims)).verdict
+
+    def test_a_statement_that_holds_in_some_settings_is_reproduced_but(self):
+        holds, fails = claim("a"), claim("b", finding="not reproduced")
+        self.assertEqual(self.verdict_of(holds, holds), "reproduced")
+        self.assertEqual(self.verdict_of(fails), "not reproduced")
+        self.assertEqual(self.verdict_of(holds, fails), "reproduced, but")
+        self.assertEqual(self.verdict_of(holds, claim("c", finding="corrected")), "corrected")
+        self.assertEqual(self.verdict_of(fails, claim("d", met=False)), "claim not met")
+
+    def test_figures_of_a_place(self):
+        for where, numbers in {"§9.1, Figs. 2 and 4": ["2", "4"], "§13.2, Fig. 13.4, 13.5": ["13.4", "13.5"],
+                               "§7.1, Fig. 7.4, Theorem 4.1": ["7.4"], "Theorem 6.1": [], "§9.1, Fig. 4; Theorem 4.1": ["4"]
+                               }.items():
+            self.assertEqual(Statement("mcf_sphere", [claim("a", where=where)]).figures, numbers, where)
+
+    def test_claims_of_one_sentence_are_one_statement(self):
+        same = [claim("a"), claim("b", statement="statement of a", norm="nodal_L2"), claim("c")]
+        self.assertEqual([len(statement.claims) for statement in grouped("mcf_sphere", same)], [2, 1])
+
+
+class Page(html.parser.HTMLParser):
+    """Tags that are open, and what would be loaded from elsewhere."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.open, self.loaded, self.words = [], [], []
+        self.feed(page)
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in ("meta", "img", "br", "link"):
+            self.open.append(tag)
+        for key, value in attrs:
+            if key == "src" and not value.startswith("data:") or key == "href" and not value.startswith("#"):
+                self.loaded.append(value)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag, tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+class Report(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        table = synthetic_table((0.49, 0.35), range(3))
+        table["parameters"]["preset"] = "paper"
+        table["fits"] = [{"quantity": "x", "norm": "lifted_H1", "variable": "tau", "order": 2.9, "ci95": [2.8, 3.0],
+                          "variant": "flow=mean_curvature"}]
+        table["provenance"] = {"git": "0123456789abcdef", "dirty": False, "date": "2024-02-03T04:05:06Z", "command": "mcf_sphere"}
+        table["rows"][0]["status"] = "failed: step 3, t = 0.1: degenerate element 7"
+        self.write("table.json", table)
+        self.write("reference/mcf_sphere.json", {"claims": [{}] * 5})
+        figure = Figure(figsize=(2, 1))
+        figure.add_subplot().plot([0, 1])
+        style.save(figure, os.path.join(self.folder, "figures/kll19/fig13_1"))
+
+    def write(self, name, data):
+        path = os.path.join(self.folder, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump(data, file)
+        return path
+
+    def verdicts(self, *claims, schema="esfem-verdicts/1"):
+        table = {"experiment": "mcf_sphere", "paper": "kll19", "table": os.path.join(self.folder, "table.json"),
+                 "claims": list(claims)}
+        return self.write("verdicts.json", {"schema": schema, "tables": [table]})
+
+    def page(self, *claims):
+        self.results = read_results(self.verdicts(*claims), os.path.join(self.folder, "reference"))
+        page = report.report_html(self.results, os.path.join(self.folder, "figures"))
+        parsed = Page(page)
+        self.assertEqual(parsed.open, [])
+        self.assertEqual(parsed.loaded, [], "the page needs no other file")
+        return page, " ".join(parsed.words)
+
+    def test_a_page_has_figure_claims_verdicts_orders_runs_and_provenance(self):
+        page, words = self.page(claim("a"), claim("b", finding="corrected", remark="a sign of (2.18)"),
+                                claim("c", "theory", "Theorem 6.1"), claim("d", "independent", "a table", "independent"))
+        for expected in ("statement of a", "2.95 [2.79, 3.11]", "a sign of (2.18)", "corrected", "Theorems and text", "2.90 ± 0.10",
+                         "failed at 0.1", "0123456789ab", "2024-02-03", "4 of 4 checks met", "1 more are checked"):
+            self.assertIn(expected, words)
+        self.assertEqual(page.count("<figure"), 1)
+        self.assertIn("figure kll19/fig13_2", self.results.missing)
+        self.assertIn("figure gallery/all_orders", words, "what is missing is said")
+
+    def test_every_statement_has_one_place(self):
+        self.page(claim("a"), claim("b", where="§14"), claim("c", "finding", "own runs", "esfem"),
+                  claim("d", "independent", "a table, Fig. 13.2", "independent"))
+        placed = place(self.results)
+        self.assertEqual({key: len(statements) for key, statements in placed.items()},
+                         {("kll19", "13.1"): 1, ("kll19", ""): 1, ("kll19", "mcf_sphere"): 1, ("kll19", "13.2"): 1})
+
+    def test_exports(self):
+        self.page(claim("a", remark="50%"), claim("b", statement="|nu_h| >= 1 & ²"))
+        files = exports(self.results)
+        self.assertEqual(files["claims.csv"].count("\n"), 3)
+        self.assertIn("mcf_sphere,a,kll19,", files["claims.csv"])
+        self.assertIn(r"$|$nu\_h$|$ $>$= 1 \& $^2$", files["claims.tex"])
+        self.assertIn("mcf_sphere,flow=mean_curvature,x,lifted_H1,tau,2.900,2.800,3.000", files["orders.csv"])
+        for name, text_ in files.items():
+            if name.endswith("tex"):
+                widths = {line.replace(r"\&", "").count("&") for line in text_.splitlines() if line.endswith(r"\\")
+                          and not line.startswith(r"\caption")}
+                self.assertEqual(len(widths), 1, name)
+
+    def test_unmet_claims_are_seen_first(self):
+        _, words = self.page(claim("a"), claim("b", met=False, reason="Convergence order not achieved"))
+        self.assertIn("1 of 2 checks met", words)
+        self.assertLess(words.index("Convergence order not achieved"), words.index("statement of a"))
+
+    def run_report(self, verdicts, *options):
+        command = [sys.executable, os.path.join(FOLDER, "report.py"), verdicts, os.path.join(self.folder, "figures"),
+                   os.path.join(self.folder, "report"), "--reference", os.path.join(self.folder, "reference"), *options]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    def test_command_line(self):
+        done = self.run_report(self.verdicts(claim("a")))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("1 figures, 1 claims", done.stdout)
+        with open(os.path.join(self.folder, "report/report.pdf"), "rb") as file:
+            self.assertEqual(file.read(5), b"%PDF-")
+        incomplete = self.run_report(self.verdicts(claim("a")), "--without-pdf", "--expect", "everything")
+        self.assertEqual(incomplete.returncode, 1)
+        self.assertEqual(self.run_report(self.verdicts(claim("a")), "--without-pdf", "--expect", "tables").returncode, 0)
+        self.write("reference/mcf_dumbbell.json", {"claims": [{}]})
+        no_table = self.run_report(self.verdicts(claim("a")), "--without-pdf", "--expect", "tables")
+        self.assertEqual(no_table.returncode, 1)
+        self.assertIn("results of mcf_dumbbell (1 claims)", no_table.stdout)
+
+    def test_bad_input_is_one_line(self):
+        for verdicts in (self.verdicts(claim("a"), schema="other"), os.path.join(self.folder, "none.json")):
+            done = self.run_report(verdicts)
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "report")))
+
+    def test_pictures_become_small(self):
+        path = os.path.join(self.folder, "figures/kll19/fig13_1.png")
+        with Image.open(io.BytesIO(small_png(path, 100))) as picture:
+            self.assertEqual(picture.width, 100)
+
+    def test_headline(self):
+        self.page(claim("a"), claim("b", finding="not reproduced"), claim("c", "finding", "own", "esfem"))
+        table = gallery.headline(self.results)
+        self.assertIn("| Mean curvature flow (kll19) | 1 | – | – | 1 | 1 of 1 | 3 |", table)
+        self.assertNotIn("claim not met", table)
+        readme = f"before\n{gallery.MARKS[0]}\nold\n{gallery.MARKS[1]}\nafter"
+        new = gallery.with_headline(readme, table)
+        self.assertTrue(new.startswith("before\n") and new.endswith("\nafter") and "old" not in new)
+        self.assertEqual(gallery.with_headline(new, table), new)
+        for broken in ("no marks", readme + gallery.MARKS[0]):
+            with self.assertRaises(TableError):
+                gallery.with_headline(broken, table)
+
+
+if __name__ == "__main__":
+    unittest.main()
