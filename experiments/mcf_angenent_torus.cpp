@@ -94,7 +94,7 @@ std::vector<Run> preset_runs(const std::string& preset) {
     add("convergence", dziuk, "grid", 2, 2, range(0, 3), {3});
     for (const int bdf : {1, 3}) add("convergence", dziuk, "grid", 2, bdf, range(0, 2), {3});
     add("convergence", dziuk, "unstructured", 2, 2, range(0, 1), {3});
-    add("convergence", ours, "grid", 3, 3, range(0, 2), {2});
+    add("convergence", ours, "grid", 3, 3, range(0, 3), {2});
     add("convergence", dziuk, "grid", 3, 2, range(0, 2), {2});
   } else {
     add("convergence", ours, "grid", 2, 3, range(0, 2), {2});
