@@ -24,12 +24,13 @@
 // small it is.
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <optional>
 
+#include "experiments/harness/distance.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
 #include "experiments/harness/method_options.hpp"
+#include "experiments/harness/timed.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
@@ -146,20 +147,6 @@ Setting resolve(const Options& options, const OwnOptions& own) {
   return setting;
 }
 
-/// A flow whose steps are timed, in seconds of the processor.
-template <class Flow>
-struct Timed {
-  using State = typename Flow::State;
-  Flow& flow;
-  double seconds = 0;
-
-  void step(const History<State>& history, int q, double tau, State& next) {
-    const std::clock_t start = std::clock();
-    flow.step(history, q, tau, next);
-    seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-  }
-};
-
 /// x, nu, H side by side, the columns of the error tables.
 Field columns(const WillmoreFlow::State& state, DiscreteCurvature&) {
   return table_columns(state);
@@ -170,16 +157,6 @@ Field columns(const State& state, DiscreteCurvature& curvature) {
   Field all(state.x.rows(), 7);
   all << state.x, curvature.nu(), curvature.H();
   return all;
-}
-
-/// The root mean square of the distances of the nodes from the surface.
-double distance(const Surface& surface, const Field& x) {
-  double sum = 0;
-  for (Eigen::Index i = 0; i < x.rows(); ++i) {
-    const Vec3 node = x.row(i).transpose();
-    sum += (node - surface.closest_point(node)).squaredNorm();
-  }
-  return std::sqrt(sum / x.rows());
 }
 
 /// Runs the flow by backward Euler steps, about `recorded_steps` of which are recorded.

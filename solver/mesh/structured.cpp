@@ -4,7 +4,8 @@
 #include <utility>
 
 #include "solver/error.hpp"
-#include "solver/mesh/mesh.hpp"
+#include "solver/mesh/profile_grid.hpp"
+#include "solver/surfaces/angenent_torus.hpp"
 
 namespace esfem {
 
@@ -78,18 +79,27 @@ void check_torus_radii(double major, double minor) {
 template <class Angle>
 Mesh torus_grid_with_angles(double major, double minor, int n_major, int n_minor, Angle around) {
   check_torus_radii(major, minor);
-  if (n_major < 3 || n_minor < 3)
-    throw InputError(format("torus grid of %d x %d cells, at least 3 x 3 expected", n_major, n_minor));
+  Eigen::Matrix2Xd profile(2, std::max(n_minor, 0));
+  for (int j = 0; j < n_minor; ++j)
+    profile.col(j) << major + minor * std::cos(around(j)), minor * std::sin(around(j));
+  return profile_grid(profile, n_major);
+}
+
+}  // namespace
+
+Mesh profile_grid(const Eigen::Matrix2Xd& profile, int n_around) {
+  const int n_profile = static_cast<int>(profile.cols());
+  if (n_around < 3 || n_profile < 3)
+    throw InputError(format("torus grid of %d x %d cells, at least 3 x 3 expected", n_around, n_profile));
   Mesh mesh;
-  mesh.nodes.resize(n_major * n_minor, 3);
-  mesh.elements.resize(2 * n_major * n_minor, 3);
-  const auto number = [&](int i, int j) { return i % n_major * n_minor + j % n_minor; };
-  for (int i = 0; i < n_major; ++i)
-    for (int j = 0; j < n_minor; ++j) {
-      const double along = turn * i / n_major, theta = around(j);
-      const double from_axis = major + minor * std::cos(theta);
-      mesh.nodes.row(number(i, j)) << from_axis * std::cos(along), from_axis * std::sin(along),
-          minor * std::sin(theta);
+  mesh.nodes.resize(n_around * n_profile, 3);
+  mesh.elements.resize(2 * n_around * n_profile, 3);
+  const auto number = [&](int i, int j) { return i % n_around * n_profile + j % n_profile; };
+  for (int i = 0; i < n_around; ++i)
+    for (int j = 0; j < n_profile; ++j) {
+      const double along = turn * i / n_around;
+      mesh.nodes.row(number(i, j)) << profile(0, j) * std::cos(along), profile(0, j) * std::sin(along),
+          profile(1, j);
       const int a = number(i, j), b = number(i + 1, j), c = number(i + 1, j + 1), d = number(i, j + 1);
       // Alternating diagonals: every node has four or eight neighbours, except beside a seam of an odd count.
       const int e = 2 * a;
@@ -104,7 +114,14 @@ Mesh torus_grid_with_angles(double major, double minor, int n_major, int n_minor
   return mesh;
 }
 
-}  // namespace
+Mesh angenent_torus_grid(int n_around, int n_profile) {
+  const AngenentProfile& profile = angenent_profile();
+  Eigen::Matrix2Xd points(2, std::max(n_profile, 0));
+  // From the outer equator upwards, against the arclength.
+  for (int j = 0; j < n_profile; ++j)
+    points.col(j) = profile.at(profile.length() * (0.5 - j / double(n_profile))).position;
+  return profile_grid(points, n_around);
+}
 
 Mesh torus_grid(double major, double minor, int n_major, int n_minor) {
   return torus_grid_with_angles(major, minor, n_major, n_minor,
@@ -137,6 +154,12 @@ std::function<double(const Vec3&)> torus_edge_length(double major, double minor,
   check_torus_radii(major, minor);
   const double smallest = largest * std::min(1.0, (major - minor) / minor);
   return radial_edge_length(major - minor, smallest, major + minor, largest);
+}
+
+std::function<double(const Vec3&)> angenent_torus_edge_length(double largest) {
+  const AngenentProfile& profile = angenent_profile();
+  return radial_edge_length(profile.at(0).position[0], largest / 2,
+                            profile.at(profile.length() / 2).position[0], largest);
 }
 
 }  // namespace esfem
