@@ -299,7 +299,8 @@ int main(int argc, char** argv) {
       "grids of\n"
       "2n x n cells, n = 12, 18, 24, 36, 48, or unstructured meshes. Lengths and times have no units: v = -H "
       "nu.\n"
-      "Without --runs, --flow, --meshes, --degree, --bdf, --levels, --steps, --mesh: the runs of the preset. "
+      "Without --runs, --flow, --triangulation, --degree, --bdf, --levels, --steps, --mesh: the runs of the "
+      "preset. "
       "With "
       "one of them:\n"
       "all combinations, where not given convergence, both flows, grid, P2, BDF3, level 0, k = 1..3.\n\n"
@@ -310,8 +311,8 @@ int main(int argc, char** argv) {
         "convergence: errors against the exact solution | order: at the end, against small steps", own.runs);
     add_names_option(app, "--flow", known_flows, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6)",
                      own.flows);
-    add_names_option(app, "--meshes", known_meshes, "grid: uniform in arclength and angle | unstructured",
-                     own.meshes);
+    add_names_option(app, "--triangulation", known_meshes,
+                     "grid: uniform in arclength and angle | unstructured", own.meshes);
     add_quadrature_option(app, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };

@@ -2,10 +2,10 @@
 """Mean curvature flow of the self-shrinking torus: errors of (5.1) and of Dziuk's scheme over h, and orders in tau.
 
 Usage: python3 plots/mcf_angenent_torus.py results/paper/mcf_angenent_torus.json figures
-Writes figures/gallery/mcf_angenent_torus.{pdf,png}, errors against the exact solution for the smallest step size of each
-scheme, degree and kind of mesh, and mcf_angenent_torus_time.{pdf,png}: (5.1) by BDF 1 to 5 against the same
-discretisation with small steps, always in the nodal counterpart of the norm. Each is left out where the table has none of
-its runs ("convergence", "order").
+Writes figures/gallery/mcf_angenent_torus.{pdf,png}, errors against the exact solution for the smallest step size of
+each scheme, degree and kind of mesh, and mcf_angenent_torus_time.{pdf,png}: (5.1) by BDF 1 to 5 against the same
+discretisation with small steps, always in the nodal counterpart of the norm. Each is left out where the table has none
+of its runs ("convergence", "order").
 """
 import style
 from convergence import NORMS, QUANTITIES as NAMES, Panel, curves_of, draw_panels, failure_notes

@@ -2,9 +2,9 @@
 """Mean curvature flow by three schemes, error against time: kll19 (5.1), Dziuk (3.6), and Barrett, Garcke, Nürnberg.
 
 Usage: python3 plots/mcf_competitors.py results/paper/mcf_competitors.json figures
-Writes figures/gallery/mcf_competitors.{pdf,png}: for each surface the errors of the nodes' positions and the distances of
-the nodes from the exact surface over the seconds that the steps take. Every mark is a run; a line joins those runs of a
-scheme that no other run of it beats in both.
+Writes figures/gallery/mcf_competitors.{pdf,png}: for each surface the errors of the nodes' positions and the distances
+of the nodes from the exact surface over the seconds that the steps take. Every mark is a run; a line joins those runs
+of a scheme that no other run of it beats in both.
 """
 import math
 

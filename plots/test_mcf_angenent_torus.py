@@ -26,7 +26,8 @@ def torus_table():
     rows = [torus_row("convergence", "mean_curvature", degree, 3, level, k) for degree in (2, 3) for level in range(3)
             for k in (2, 3)]
     rows += [torus_row("convergence", "mean_curvature", 2, 3, level, 3, "unstructured") for level in range(2)]
-    rows += [torus_row("convergence", "dziuk", 2, bdf, level, 3) for bdf in (1, 2, 3) for level in range(4 - (bdf == 3))]
+    rows += [torus_row("convergence", "dziuk", 2, bdf, level, 3) for bdf in (1, 2, 3)
+             for level in range(4 - (bdf == 3))]
     rows += [torus_row("order", flow, 2, bdf, 0, k) for flow in ("mean_curvature", "dziuk") for bdf in range(1, 6)
              for k in (2, 3, 4)]
     return {"schema": SCHEMA, "experiment": "mcf_angenent_torus", "paper": "esfem", "parameters": {}, "rows": rows}
@@ -63,7 +64,8 @@ class AngenentTorus(unittest.TestCase):
     def test_failed_runs_are_counted(self):
         table = copy.deepcopy(self.table)
         table["rows"][0] = {**table["rows"][0], "status": "failed: singular", "errors": {}}
-        self.assertIn("1 of ", texts_of(dict(mcf_angenent_torus.draw(table, "lifted_H1"))["gallery/mcf_angenent_torus"]))
+        figures = dict(mcf_angenent_torus.draw(table, "lifted_H1"))
+        self.assertIn("1 of ", texts_of(figures["gallery/mcf_angenent_torus"]))
 
     def test_what_the_table_does_not_have_is_left_out(self):
         for kind, name in (("convergence", "gallery/mcf_angenent_torus"), ("order", "gallery/mcf_angenent_torus_time")):
