@@ -29,17 +29,41 @@ struct InitialSurface {
         space(mesh) {}
 };
 
-/// The self-shrinking torus, twice as many cells around the axis as along the profile, whose edges are h.
+/// Edges along the profile of the self-shrinking torus are like r^grading, r the distance from the axis. On
+/// grids of equal edges the errors at the hole, where r = 0.44, show no order until 14,000 nodes: for P4
+/// those of nu are twenty times as large on as many nodes.
+constexpr double grading = 0.5;
+
+/// The arclengths s_0, .., s_n that cut the profile into n edges of sizes like r^grading.
+std::vector<double> graded_arclengths(int n) {
+  const AngenentProfile& profile = angenent_profile();
+  const int samples = 200 * n;
+  const double ds = profile.length() / samples;
+  std::vector<double> measure{0};  // int r^-grading ds
+  for (int i = 0; i < samples; ++i)
+    measure.push_back(measure.back() + std::pow(profile.at((i + 0.5) * ds).position[0], -grading) * ds);
+  std::vector<double> cuts;
+  for (int i = 0, at = 0; i <= n; ++i) {
+    const double wanted = measure.back() * i / n;
+    while (at + 1 < samples && measure[at + 1] < wanted) ++at;
+    cuts.push_back((at + (wanted - measure[at]) / (measure[at + 1] - measure[at])) * ds);
+  }
+  return cuts;
+}
+
+/// The self-shrinking torus, twice as many cells around the axis as along the profile, whose edges are h long
+/// on average.
 Mesh angenent_grid(double h) {
-  const double two_pi = 2 * std::acos(-1.0), length = angenent_profile().length();
+  const double two_pi = 2 * std::acos(-1.0);
   // Of an odd number of cells not all diagonals can alternate.
-  const int n = 2 * static_cast<int>(std::lround(length / h / 2));
+  const int n = 2 * static_cast<int>(std::lround(angenent_profile().length() / h / 2));
+  const std::vector<double> s = graded_arclengths(n);
   Mesh mesh = torus_grid(2, 1, 2 * n, n);
   for (int j = 0; j < mesh.nodes.rows(); ++j) {
     const double x = mesh.nodes(j, 0), y = mesh.nodes(j, 1), z = mesh.nodes(j, 2), rho = std::hypot(x, y);
     // The profile begins at the inner equator and goes upwards.
-    const double s = std::atan2(z, 2 - rho) / two_pi * length;
-    const Eigen::Vector2d p = angenent_profile().at(s).position;
+    const int i = (static_cast<int>(std::lround(std::atan2(z, 2 - rho) / two_pi * n)) + n) % n;
+    const Eigen::Vector2d p = angenent_profile().at(s[i]).position;
     mesh.nodes.row(j) << p[0] * x / rho, p[0] * y / rho, p[1];
   }
   return mesh;
@@ -319,25 +343,25 @@ const std::vector<OrdersOfFlow>& orders_of_flows() {
   // clang-format off
   static const std::vector<OrdersOfFlow> flows = {
       {"mean_curvature", "self-shrinking torus", {"x", "v", "nu", "H"},
-       {0.2, 0.02}, {0.235, 0.375, 0.54, 0.63}, {3, 2, 1, 1, 1},
+       {0.2, 0.02}, {0.235, 0.47, 0.63, 0.75}, {3, 3, 2, 1, 1},
        {0.2, 0.02}, 0.08, {0.63, 0.94, 1.25, 1.5}, {2, 2, 2, 2, 2},
-       113, 8e-6},
+       113, 2.4e-6},
       {"dziuk", "self-shrinking torus", {"x"},
-       {0.2, 0.02}, {0.235, 0.375, 0.54, 0.63}, {3, 2, 2, 2, 2},
+       {0.2, 0.02}, {0.235, 0.47, 0.63, 0.75}, {3, 3, 2, 2, 2},
        {0.2, 0.02}, 0.08, {0.3, 0.47, 0.75, 0.94}, {3, 3, 3, 2, 2},
-       113, 4e-6},
+       113, 1.2e-6},
       {"coupled_diffusion", "growing sphere", {"x", "v", "u"},
-       {0.5, 0.1}, {0.19, 0.38, 0.57, 0.75}, {5, 4, 3, 3, 3},
+       {0.2, 0.1}, {0.19, 0.38, 0.57, 0.75}, {6, 5, 4, 4, 3},
        {1, 0.1}, 0.4, {0.5, 0.8, 1.0, 1.0}, {3, 2, 3, 2, 3},
-       27.5, 3e-6},
+       27.5, 1.5e-6},
       {"willmore", "Clifford torus; ellipsoid", {"x", "nu", "H"},
        {0.02, 0.01}, {0.45, 0.6, 0.75, 0.85}, {3, 3, 3, 3, 3},
        {0.5, 0.1}, 0.1, {0.9, 1.25, 1.28, 1.28}, {4, 3, 4, 4, 5},
-       170, 8e-6},
+       170, 1.7e-6},
       {"cahn_hilliard", "evolving ellipsoid", {"u", "w"},
-       {0.2, 0.02}, {0.19, 0.38, 0.57, 0.75}, {3, 2, 2, 2, 2},
+       {0.2, 0.02}, {0.19, 0.38, 0.57, 0.75}, {4, 4, 3, 2, 2},
        {1, 0.2}, 0.4, {0.5, 0.8, 1.0, 1.0}, {5, 3, 3, 3, 4},
-       27.5, 5e-6},
+       27.5, 3e-6},
   };
   // clang-format on
   return flows;
