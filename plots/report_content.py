@@ -56,6 +56,7 @@ BEYOND = (
     Figure("gallery/all_orders", "", "all_orders", "Orders of all degrees and all BDF methods, for each flow."),
     Figure("gallery/mcf_angenent_torus", "", "mcf_angenent_torus",
            "Mean curvature flow of the self-shrinking torus: an exact solution that is no sphere."),
+    Figure("gallery/mcf_angenent_torus_time", "", "mcf_angenent_torus", "The same: errors in time of BDF1 to BDF5."),
     Figure("gallery/mcf_competitors", "", "mcf_competitors", "Mean curvature flow by three schemes: error against time."),
     Figure("gallery/willmore_competitors", "", "willmore_competitors", "Willmore flow by three schemes."),
     Figure("gallery/surface_diffusion", "", "surface_diffusion", "Surface diffusion of an ellipsoid."),
