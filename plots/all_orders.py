@@ -33,7 +33,7 @@ GRIDS = (
 )
 # From one order too little to one too much; the middle is white, and lightness falls faster to the side of too little.
 DEVIATION = matplotlib.colors.LinearSegmentedColormap.from_list(
-    "deviation", [(0, "#B2450E"), (0.3, "#F2B48A"), (0.44, "#FFFFFF"), (0.56, "#FFFFFF"), (1, "#A9CCEA")])
+    "deviation", [(0, "#B2450E"), (0.3, "#F2B48A"), (0.44, "#FFFFFF"), (0.56, "#FFFFFF"), (1, "#CBE1F4")])
 UNSTABLE = {"facecolor": "0.25", "edgecolor": "white"}
 HIDDEN = {"facecolor": "0.93", "edgecolor": "0.7", "hatch": "////"}
 
