@@ -33,7 +33,7 @@ GRIDS = (
 )
 # From one order too little to one too much; the middle is white, and lightness falls faster to the side of too little.
 DEVIATION = matplotlib.colors.LinearSegmentedColormap.from_list(
-    "deviation", [(0, "#B2450E"), (0.3, "#F2B48A"), (0.44, "#FFFFFF"), (0.56, "#FFFFFF"), (1, "#A9CCEA")])
+    "deviation", [(0, "#B2450E"), (0.3, "#F2B48A"), (0.44, "#FFFFFF"), (0.56, "#FFFFFF"), (1, "#CBE1F4")])
 UNSTABLE = {"facecolor": "0.25", "edgecolor": "white"}
 HIDDEN = {"facecolor": "0.93", "edgecolor": "0.7", "hatch": "////"}
 
@@ -59,11 +59,12 @@ def labels_of(variant):
 
 
 def state_of(rows):
-    """"missing", "unstable" (a run failed, or an error grew when tau was halved) or "ok"."""
+    """"missing", "failed" (a run, or the small steps that it is compared with), "unstable" or "ok"."""
     if not rows:
         return "missing"
-    unstable = any(row["status"] != "ok" or row.get("values", {}).get("unstable", 0) for row in rows)
-    return "unstable" if unstable else "ok"
+    if any(row["status"] != "ok" for row in rows):
+        return "failed"
+    return "unstable" if any(row.get("values", {}).get("unstable", 0) for row in rows) else "ok"
 
 
 def is_hidden(rows, quantity, norm):
@@ -124,16 +125,16 @@ def _cell(axes, x, y, state, orders, hidden, expected):
 
     if state == "missing":
         box(facecolor="white", edgecolor="0.8")
-    elif state == "unstable":
+    elif state in ("failed", "unstable"):
         box(**UNSTABLE)
-        write("unstable", color="white")
+        write(state, color="white")
     elif all(order is None for order in orders) and any(hidden):
         box(**HIDDEN)
         write("hidden", bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8})
     else:
         known = [order for order in orders if order is not None]
         lowest = min(known) - expected if known else 0
-        box(facecolor=DEVIATION(min(max((lowest + 1) / 2, 0), 1)), edgecolor="0.7")
+        box(facecolor=DEVIATION(min(max((lowest + 1) / 2, 0.0), 1.0)), edgecolor="0.7")
         for row, (order, is_concealed) in enumerate(zip(orders, hidden)):
             text = f"{order:.1f}".replace("-", "−") if order is not None else ("hid." if is_concealed else "–")
             dark = lowest < -0.8

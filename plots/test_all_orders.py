@@ -93,9 +93,12 @@ class AllOrders(unittest.TestCase):
         for each in table["fits"]:
             if "flow=willmore" in each["variant"] and "run=time" in each["variant"]:
                 each["order"] -= 1
-        low, right = (next(axes for axes in draw(table).axes if axes.get_gid() == f"{flow} time nodal_H1").patches[7]
-                      for flow in ("willmore", "mean_curvature"))
+            if "flow=cahn_hilliard" in each["variant"] and "run=time" in each["variant"]:
+                each["order"] += 3
+        low, right, high = (next(axes for axes in draw(table).axes if axes.get_gid() == f"{flow} time nodal_H1").patches[7]
+                      for flow in ("willmore", "mean_curvature", "cahn_hilliard"))
         self.assertLess(sum(low.get_facecolor()[:3]), sum(right.get_facecolor()[:3]) - 0.5)
+        self.assertGreater(high.get_facecolor()[2], high.get_facecolor()[0])  # blue
 
     def test_part_of_the_grid(self):
         table = synthetic_table()
@@ -106,7 +109,8 @@ class AllOrders(unittest.TestCase):
 
     def test_states(self):
         self.assertEqual(state_of([]), "missing")
-        self.assertEqual(state_of([row("dziuk", "1", "1", "time", status="failed: why")]), "unstable")
+        self.assertEqual(state_of([row("dziuk", "1", "1", "time", status="failed: why")]), "failed")
+        self.assertEqual(state_of([row("dziuk", "1", "1", "time", values={"unstable": 1})]), "unstable")
         self.assertEqual(state_of([row("dziuk", "1", "1", "time")]), "ok")
         self.assertEqual(labels_of("bdf=2, degree=1, flow=dziuk, run=time"), ("dziuk", "1", "2", "time"))
         self.assertFalse(is_hidden([row("dziuk", "1", "1", "space")], "x", "lifted_H1"))
