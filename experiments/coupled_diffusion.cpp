@@ -84,6 +84,7 @@ std::vector<Run> preset_runs(const std::string& preset) {
     add_runs("convergence", {3}, {0, 1, 2, 3, 4}, {0, 1, 2, 3, 4, 5}, runs);
     add_runs("difference", {3}, {0, 1, 2, 3}, {0, 1, 2, 3, 4, 5}, runs);
     add_runs("dynamic", {3}, {0, 1, 2, 3}, {1, 2, 3, 4}, runs);
+    add_runs("cost", {3}, {0}, {2}, runs);
   } else {
     add_runs("convergence", {3}, {0, 1, 2, 3}, {1, 2, 3, 4}, runs);
     add_runs("difference", {3}, {0, 1}, {1, 2, 3, 4}, runs);
@@ -92,7 +93,6 @@ std::vector<Run> preset_runs(const std::string& preset) {
   add_runs("quotient", {3}, {0, 1}, {3}, runs);
   add_runs("none", {3}, {0, 1}, {3}, runs);
   add_runs("extrapolation", {3}, {0}, {1, 2, 3, 4}, runs);
-  add_runs("cost", {3}, {0}, {2}, runs);
   add_runs("growth", {3}, {0}, {3}, runs);
   add_runs("difference", {2, 4}, {0, 1}, {1, 2, 3, 4}, runs);
   // Where each order shows: small errors end at round-off times the growth of f.

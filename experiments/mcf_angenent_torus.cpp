@@ -27,12 +27,12 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
+#include "experiments/harness/mcf_columns.hpp"
 #include "experiments/harness/method_options.hpp"
+#include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_flow.hpp"
-#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/profile_grid.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
@@ -143,83 +143,48 @@ Mesh generated(const Run& run) {
   return generate_mesh(angenent_torus(), angenent_torus_edge_length(edge_length(largest_h, run.level)));
 }
 
-/// x, v, nu, H side by side, the columns of the error tables.
-Field columns(const MeanCurvatureFlow::State& state, DiscreteCurvature&) {
-  return table_columns(state);
-}
-Field columns(const DziukFlow::State& state, DiscreteCurvature& curvature) {
-  curvature.compute(state.x);
-  Field all(state.x.rows(), 10);
-  all << state.x, state.v, curvature.nu(), curvature.H();
-  return all;
-}
-
-/// The torus on one mesh by one flow. make(): the flow; exact_state(t): exact nodal values.
-template <class MakeFlow, class ExactState>
+/// The torus on one mesh by one flow. exact_state(t): exact nodal values.
+template <class Flow, class ExactState>
 struct TorusRuns {
   const SurfaceSpace& space;
   const ExactEvolution& exact;
   const Field& x0;
-  MakeFlow make;
+  Flow flow;
   ExactState exact_state;
   int reference_bdf;  ///< of the solution with small steps
-  using State = std::decay_t<decltype(exact_state(0.0))>;
-  using Starts = std::function<State(double)>;
-
-  template <class Observer>
-  void run(const TimeGrid& grid, const State& initial, const Starts& starts, Observer&& observe) const {
-    auto flow = make();
-    integrate(flow, grid, initial, starts, observe);
-  }
+  using State = typename Flow::State;
 
   /// Errors against the exact solution, over all steps.
-  void convergence(const TimeGrid& grid, Row& row) const {
+  void convergence(const TimeGrid& grid, Row& row) {
     ErrorRecorder errors(space, exact, x0);
     DiscreteCurvature curvature(space);
-    run(grid, exact_state(0.0), exact_state,
-        [&](int, const State& state) { errors.record(state.t, columns(state, curvature)); });
+    integrate(flow, grid, exact_state(0.0), std::function<State(double)>(exact_state),
+              [&](int, const State& state) { errors.record(state.t, mcf_columns(state, curvature)); });
     row.errors = errors.maxima();
     row.series = errors.series();
   }
 
-  /// Errors at the end against the same discretisation in space with small steps. It gives the
-  /// starting values at t = 0.1, too: what the interpolation of the exact ones leaves in the fast modes has
-  /// died out there.
-  void order(const TimeGrid& grid, Row& row) const {
-    const int ratio = 1 << finer_by, small_steps = ratio * grid.steps;
-    const int waited =
-        static_cast<int>(std::lround(ratio * (time_steps.end_time - order_steps.end_time) / grid.tau));
-    const TimeGrid small{reference_bdf, grid.tau / ratio, waited + small_steps, parse_start("substeps:16")};
-    std::vector<State> reference;  // at the steps 0, .., q - 1 of the grid, and at the end
-    run(small, exact_state(0.0), {}, [&](int n, const State& state) {
-      const int since = n - waited;
-      if ((since >= 0 && since % ratio == 0 && since / ratio < grid.order) || n == small.steps)
-        reference.push_back(state);
-    });
-    State end;
-    run(
-        grid, reference[0], [&](double t) { return reference[std::lround(t / grid.tau)]; },
-        [&](int n, const State& state) {
-          if (n == grid.steps) end = state;
-        });
+  /// Errors at the end against the same discretisation in space with small steps. It gives the starting
+  /// values at t = 0.1, too: what the interpolation of the exact ones leaves in the fast modes has died out
+  /// there.
+  void order(const TimeGrid& grid, Row& row) {
+    const int ratio = 1 << finer_by, last = static_cast<int>(std::lround(time_steps.end_time / grid.tau));
+    const TimeGrid small{reference_bdf, grid.tau / ratio, ratio * last, parse_start("substeps:16")};
+    const SmallSteps<Flow> solution(flow, small, exact_state(0.0), {}, ratio);
+    LargestDifferences differences(space, exact.quantities);
     DiscreteCurvature curvature(space);
-    const Field e = columns(end, curvature) - columns(reference.back(), curvature);
-    SymmetricMatrix M = space.matrix(), A = space.matrix();
-    space.assemble(reference.back().x, M, A);
-    const SquaredNorms norms = nodal_norms(M, A, e);
-    for (const auto& [quantity, components] : exact.quantities) {
-      const int column = exact.column(quantity);
-      const double L2 = norms.L2.segment(column, components).sum(),
-                   H1_semi = norms.H1_semi.segment(column, components).sum();
-      row.errors[quantity] = {{"nodal_L2", std::sqrt(L2)},
-                              {"nodal_H1_semi", std::sqrt(H1_semi)},
-                              {"nodal_H1", std::sqrt(L2 + H1_semi)}};
-    }
+    solution.compare(grid.order, grid.tau, last - grid.steps + grid.order,
+                     [&](int n, const State& state, const State& exactly) {
+                       if (n < last) return;
+                       differences.add(exactly.x,
+                                       mcf_columns(state, curvature) - mcf_columns(exactly, curvature));
+                     });
+    row.errors = differences.errors();
   }
 };
-template <class MakeFlow, class ExactState>
-TorusRuns(const SurfaceSpace&, const ExactEvolution&, const Field&, MakeFlow, ExactState, int)
-    -> TorusRuns<MakeFlow, ExactState>;
+template <class Flow, class ExactState>
+TorusRuns(const SurfaceSpace&, const ExactEvolution&, const Field&, Flow, ExactState, int)
+    -> TorusRuns<Flow, ExactState>;
 
 Row run_cell(const Setting& setting, const Run& run, Row row) {
   // 1. The initial surface and the finite element space on it.
@@ -232,14 +197,14 @@ Row run_cell(const Setting& setting, const Run& run, Row row) {
   // 2. The time steps, with the errors of each or at the end.
   const ExactEvolution exact = shrinking_angenent_torus();
   const TimeGrid grid{run.bdf, row.tau, row.steps, setting.start};
-  const auto measure = [&](const auto& runs) {
+  const auto measure = [&](auto&& runs) {
     run.kind == "order" ? runs.order(grid, row) : runs.convergence(grid, row);
   };
   if (run.flow == "dziuk")
-    measure(TorusRuns{space, exact, mesh.nodes, [&] { return DziukFlow(space); },
+    measure(TorusRuns{space, exact, mesh.nodes, DziukFlow(space),
                       [&](double t) { return exact_dziuk_state(exact, mesh.nodes, t); }, 3});
   else
-    measure(TorusRuns{space, exact, mesh.nodes, [&] { return MeanCurvatureFlow(space, {}); },
+    measure(TorusRuns{space, exact, mesh.nodes, MeanCurvatureFlow(space, {}),
                       [&](double t) { return exact_mean_curvature_state(exact, mesh.nodes, t); }, 5});
   return row;
 }

@@ -27,14 +27,13 @@
 #include "experiments/harness/distance.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
+#include "experiments/harness/mcf_columns.hpp"
 #include "experiments/harness/method_options.hpp"
 #include "experiments/harness/timed.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/bgn_flow.hpp"
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_flow.hpp"
-#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/profile_grid.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
@@ -118,18 +117,6 @@ std::vector<Run> resolve(const Options& options, const OwnOptions& own) {
   return runs;
 }
 
-/// x, v, nu, H side by side, the columns of the error tables.
-Field columns(const MeanCurvatureFlow::State& state, DiscreteCurvature&) {
-  return table_columns(state);
-}
-template <class State>
-Field columns(const State& state, DiscreteCurvature& curvature) {
-  curvature.compute(state.x);
-  Field all(state.x.rows(), 10);
-  all << state.x, state.v, curvature.nu(), curvature.H();
-  return all;
-}
-
 /// Runs the flow from exact_state(0), and fills in errors, distance and seconds.
 template <class Flow, class ExactState>
 void run_flow(Flow&& flow, int bdf, const ExactState& exact_state, const SurfaceSpace& space, const Field& x0,
@@ -143,7 +130,7 @@ void run_flow(Flow&& flow, int bdf, const ExactState& exact_state, const Surface
   integrate(timed, TimeGrid{bdf, row.tau, row.steps, Start{}}, exact_state(0.0),
             std::function<State(double)>(exact_state), [&](int n, const State& state) {
               if (n % every != 0 && n != row.steps) return;
-              errors.record(state.t, columns(state, curvature));
+              errors.record(state.t, mcf_columns(state, curvature));
               farthest = std::max(farthest, distance(exact.surface(state.t), state.x));
             });
   row.errors = errors.maxima();

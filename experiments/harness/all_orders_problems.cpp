@@ -3,11 +3,11 @@
 
 #include <cmath>
 
+#include "experiments/harness/mcf_columns.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/flows/growing_sphere.hpp"
@@ -94,12 +94,7 @@ struct DziukOnTorus {
   DziukOnTorus(int degree, double h, double) : on(angenent_torus(), angenent_grid(h), degree) {}
   Flow flow() const { return Flow(on.space); }
   Flow::State state(double t) const { return exact_dziuk_state(exact, on.mesh.nodes, t); }
-  Field columns(const Flow::State& state) const {
-    curvature.compute(state.x);
-    Field all(state.x.rows(), 10);
-    all << state.x, state.v, curvature.nu(), curvature.H();
-    return all;
-  }
+  Field columns(const Flow::State& state) const { return mcf_columns(state, curvature); }
 };
 
 struct CoupledOnSphere {
