@@ -20,6 +20,7 @@ from table import TableError
 
 CLASSES = {"reproduced": "reproduced", "reproduced, but": "but", "corrected": "corrected", "not reproduced": "not",
            "claim not met": "open", "holds": "holds"}
+PRINTED_CHECKS = 80
 PUBLISHED = ("reproduced", "reproduced, but", "corrected", "not reproduced", "claim not met")
 
 
@@ -58,10 +59,18 @@ def _what(claim):
 
 
 def claims_table(statements):
+    """Many checks are for the screen; on paper there are those that do not simply hold."""
     if not statements:
         return ""
+    heads = ["verdict", "statement", "of what", "expected", "measured"]
     rows = [row for statement in statements for row in claim_rows(statement)]
-    return table(["verdict", "statement", "of what", "expected", "measured"], rows, "claims")
+    if len(rows) <= PRINTED_CHECKS:
+        return table(heads, rows, "claims")
+    others = [row for statement in statements if statement.verdict not in ("reproduced", "holds") for row in claim_rows(statement)]
+    note = tag("p", f"{len(rows)} checks, all in {tag('code', 'claims.csv')}" + ("; the others just hold:" if others else
+               ", and all of them hold."), class_="note print")
+    return (tag("details", tag("summary", f"{len(rows)} checks") + table(heads, rows, "claims"), class_="screen") + note
+            + tag("div", table(heads, others, "claims"), class_="print") * bool(others))
 
 
 def figure_html(figure, folder, missing):
@@ -101,8 +110,9 @@ def paper_section(paper, placed, results, folder):
                  class_="source")]
     numbers = list(dict.fromkeys(figure.number for figure in paper.figures))
     for figure_number in numbers:
-        parts.append(tag("h3", f"Figure {figure_number}"))
-        parts += [figure_html(figure, folder, results.missing) for figure in paper.figures if figure.number == figure_number]
+        first, *others = [figure_html(figure, folder, results.missing) for figure in paper.figures
+                          if figure.number == figure_number]
+        parts += [tag("section", tag("h3", f"Figure {figure_number}") + first), *others]
         parts.append(claims_table(placed.get((paper.key, figure_number), [])))
         parts.append(see_also(figure_number, placed, paper.key))
     if (paper.key, "") in placed:
@@ -119,10 +129,11 @@ def paper_section(paper, placed, results, folder):
 
 def beyond_section(placed, results, folder):
     parts = [tag("h2", "Beyond the papers", id="beyond")]
-    for figure in BEYOND:
-        parts.append(tag("h3", text(figure.caption)) + figure_html(figure, folder, results.missing))
-        parts.append(claims_table(placed.get(("beyond", figure.stem), [])))
-    return "".join(parts) + tables_html([figure.stem for figure in BEYOND], results)
+    for i, figure in enumerate(BEYOND):
+        parts.append(tag("section", tag("h3", text(figure.caption)) + figure_html(figure, folder, results.missing)))
+        if all(figure.stem != later.stem for later in BEYOND[i + 1:]):
+            parts.append(claims_table(placed.get(("beyond", figure.stem), [])))
+    return "".join(parts) + tables_html(dict.fromkeys(figure.stem for figure in BEYOND), results)
 
 
 def counts_table(placed):
@@ -142,9 +153,9 @@ def counts_table(placed):
 
 
 def exceptions_table(results):
-    """Published statements that do not simply hold, paper by paper, worst first."""
+    """Published statements that do not hold, paper by paper, worst first."""
     chosen = [statement for statement in results.statements
-              if statement.is_published and statement.verdict != "reproduced"]
+              if statement.is_published and statement.verdict in ("claim not met", "not reproduced", "corrected")]
     order = [paper.key for paper in PAPERS]
     chosen.sort(key=lambda statement: (order.index(statement.source["paper"]) if statement.source["paper"] in order
                                        else len(order), SEVERITY.index(statement.verdict)))
@@ -166,7 +177,7 @@ def report_html(results, folder):
     body.append(beyond_section(placed, results, folder))
     body.append(tag("h2", "Where the numbers come from", id="provenance") + provenance_table(results.tables))
     contents = "".join(tag("li", f'<a href="#{key}">{text(title)}</a>') for key, title in
-                       [("holds", "What holds"), ("exceptions", "What does not hold as it stands")]
+                       [("holds", "What holds"), ("exceptions", "What is not reproduced, or corrected")]
                        + [(paper.key, f"{paper.name} ({paper.key})") for paper in PAPERS]
                        + [("beyond", "Beyond the papers"), ("provenance", "Where the numbers come from")])
     met = sum(claim["met"] for claim in claims)
@@ -184,7 +195,7 @@ def report_html(results, folder):
                 "wrong as printed, and the remark says what is right. Independent values come from other implementations; "
                 "findings are this project’s own. Orders are fitted to all runs at once; brackets are 95% intervals.",
                 class_="note"),
-            tag("h2", "What does not hold as it stands", id="exceptions"), exceptions_table(results)]
+            tag("h2", "What is not reproduced, or corrected", id="exceptions"), exceptions_table(results)]
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "report.css"), encoding="utf-8") as file:
         style = file.read()
     return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'

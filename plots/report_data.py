@@ -111,7 +111,7 @@ def grouped(stem, claims):
 
 def place(results):
     """{(section, key): statements}: ("kll19", "13.1") for a figure, ("kll19", "") for theorems and text,
-    ("kll19", stem) for findings and independent values, ("beyond", stem) for what no paper has.
+    ("kll19", stem) for findings and independent values, ("beyond", stem) for what no paper has: there theorems stand, too.
 
     Raises TableError for a statement of a source that the report does not know.
     """
@@ -121,10 +121,10 @@ def place(results):
         section = statement.source["paper"]
         if section not in PAPER_KEYS:
             section = results.tables[statement.stem]["paper"]
-        if section not in PAPER_KEYS or (not statement.is_published and statement.stem in BEYOND_STEMS):
-            if statement.stem not in BEYOND_STEMS and section not in PAPER_KEYS:
-                raise TableError(f"no place in the report for the claims of {statement.stem}: see report_content.py")
+        if statement.stem in BEYOND_STEMS and (section not in PAPER_KEYS or statement.source["basis"] != "statement"):
             section, key = "beyond", statement.stem
+        elif section not in PAPER_KEYS:
+            raise TableError(f"no place in the report for the claims of {statement.stem}: see report_content.py")
         else:
             known = [number for number in statement.figures if number in numbers[section]]
             key = known[0] if known else "" if statement.is_published else statement.stem
