@@ -7,6 +7,7 @@ from report_html import number, table, tag, text
 
 NORMS = {"lifted_L2": "lifted L<sup>2</sup>", "lifted_H1": "lifted H<sup>1</sup>", "nodal_L2": "nodal L<sup>2</sup>",
          "nodal_H1": "nodal H<sup>1</sup>"}
+SHOWN = ("lifted_H1", "nodal_H1", "lifted_L2", "nodal_L2")  # the first that there is
 PRINTED_RUNS, PRINTED_ORDERS = 90, 40  # longer tables are for the screen: paper has the CSV
 
 
@@ -44,7 +45,7 @@ def runs_table(entry, stem):
     for row in rows:
         cells = [*(_plain(row.get(key, "")) for key in labels), number(row.get("nodes")), number(row.get("h")),
                  number(row.get("tau")), number(row.get("seconds"))]
-        cells += [number(read(row)) for _, read in columns]
+        cells += [read(row) for _, read in columns]
         body.append(cells + [_status(row["status"])])
     heads = [*(text(label) for label in labels), "N", "h", "τ", "s", *(head for head, _ in columns), "status"]
     failed = sum(row["status"] != "ok" for row in rows)
@@ -65,6 +66,14 @@ def _status(status):
     return f"{when[1]} at {when[2]}" if when else html.escape(status[:40])
 
 
+def _error(norms, shown):
+    """The first of the norms that the row has; a mark says when it is not that of the column's head."""
+    norm = next((norm for norm in shown if norm in norms), None)
+    if norm is None:
+        return ""
+    return number(norms[norm]) + ("" if norm == shown[0] else f" <small>({NORMS[norm].partition(' ')[0]})</small>")
+
+
 def _columns(rows):
     """(heading, function of a row) for what is shown of the rows."""
     norms = {}
@@ -73,13 +82,13 @@ def _columns(rows):
             norms.setdefault(quantity, set()).update(found)
     columns = []
     for quantity, found in norms.items():
-        norm = next((name for name in ("lifted_H1", "nodal_H1", "lifted_L2", "nodal_L2") if name in found), sorted(found)[0])
-        heading = f"{text(quantity)}, {NORMS.get(norm, norm)}"
-        columns.append((heading, lambda row, q=quantity, n=norm: row.get("errors", {}).get(q, {}).get(n)))
+        shown = [norm for norm in SHOWN if norm in found] or sorted(found)[:1]
+        columns.append((f"{text(quantity)}, {NORMS.get(shown[0], text(shown[0]))}",
+                        lambda row, q=quantity, n=shown: _error(row.get("errors", {}).get(q, {}), n)))
     if columns:
         return columns
     names = dict.fromkeys(name for row in rows for name in row.get("values", {}))
-    return [(text(name.replace("_", " ")), lambda row, n=name: row.get("values", {}).get(n)) for name in list(names)[:9]]
+    return [(text(name.replace("_", " ")), lambda row, n=name: number(row.get("values", {}).get(n))) for name in list(names)[:9]]
 
 
 def provenance_table(tables):
@@ -95,6 +104,6 @@ def provenance_table(tables):
         for key in ("version", "compiler", "flags", "cpu", "threads"):
             shared.setdefault(key, dict.fromkeys([])).update({str(origin.get(key, "")): None})
     common = "".join(tag("li", f"{key}: {tag('code', text(', '.join(values)))}") for key, values in shared.items())
-    return (tag("ul", common) + table(["table", "commit", "date", "runs", "seconds", "MB", "command"], rows)
+    return (tag("ul", common) + table(["table", "commit", "date", "runs", "seconds", "MB", "command"], rows, "provenance")
             + tag("p", "Seconds are those of all runs together, megabytes those of the largest. Every table is there as JSON, CSV "
                   "and LaTeX under the name of its experiment, every figure as PDF and PNG.", class_="note"))
