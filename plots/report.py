@@ -39,8 +39,9 @@ def claim_rows(statement):
         reason = tag("span", text(claim["reason"]), class_="remark") if claim["reason"] else ""
         last = i == len(statement.claims) - 1
         rows.append(("" if last else "more",
-                     ["" if verdict(claim) == before else badge(verdict(claim)), (words if first else "") + remark + reason, _what(claim),
-                      text(claim["expected"]), text(claim["measured"])]))
+                     ["" if verdict(claim) == before else badge(verdict(claim)),
+                      (words if first else "") + remark + reason, _what(claim), text(claim["expected"]),
+                      text(claim["measured"])]))
         before = verdict(claim)
     return rows
 
@@ -66,7 +67,8 @@ def claims_table(statements):
     rows = [row for statement in statements for row in claim_rows(statement)]
     if len(rows) <= PRINTED_CHECKS:
         return table(heads, rows, "claims")
-    others = [row for statement in statements if statement.verdict not in ("reproduced", "holds") for row in claim_rows(statement)]
+    others = [row for statement in statements if statement.verdict not in ("reproduced", "holds")
+              for row in claim_rows(statement)]
     note = tag("p", f"{len(rows)} checks, all in {tag('code', 'claims.csv')}" + ("; the others just hold:" if others else
                ", and all of them hold."), class_="note print")
     return (tag("details", tag("summary", f"{len(rows)} checks") + table(heads, rows, "claims"), class_="screen") + note
@@ -191,8 +193,8 @@ def report_html(results, folder):
             tag("nav", tag("ol", contents)),
             tag("h3", "What holds", id="holds"), counts_table(placed),
             tag("p", "A statement is a sentence, a figure or a theorem of a paper that a computation can test; it may need "
-                "several checks. <i>Reproduced, but</i>: with a restriction that the remark names, or in some settings only. <i>Corrected</i>: "
-                "wrong as printed, and the remark says what is right. Independent values come from other implementations; "
+                "several checks. <i>Reproduced, but</i>: with a restriction that the remark names, or in some settings only. "
+                "<i>Corrected</i>: wrong as printed, and the remark says what is right. Independent values come from other implementations; "
                 "findings are this project’s own. Orders are fitted to all runs at once; brackets are 95% intervals.",
                 class_="note"),
             tag("h2", "What is not reproduced, or corrected", id="exceptions"), exceptions_table(results)]

@@ -18,7 +18,8 @@ PAPERS = (
            Figure("kll19/fig13_4", "13.4", "mcf_dumbbell", "(5.1) with normalised normal close to the pinch."),
            Figure("kll19/fig13_5", "13.5", "mcf_dumbbell", "Largest mean curvature over time, its blow-up, and the worst angle of the mesh."),
            Figure("kll19/fig13_6", "13.6", "mcf_dumbbell", "Least and largest length of the computed normal over time."))),
-    Paper("nick18", "Surface evolution coupled to diffusion", "J. Nick", "Linearly implicit full discretization of surface evolution coupled to diffusion on the surface",
+    Paper("nick18", "Surface evolution coupled to diffusion", "J. Nick",
+          "Linearly implicit full discretization of surface evolution coupled to diffusion on the surface",
           "Master's thesis, Tübingen 2018",
           "A surface that is moved by what diffuses on it, (2.19)–(2.21), and a variant of it, (7.2).",
           (Figure("nick18/fig1", "1", "coupled_diffusion", "Errors of the position over the step size."),
@@ -64,5 +65,5 @@ BEYOND = (
     Figure("pfhub/fig1d", "", "cahn_hilliard_pfhub", "PFHub benchmark 1d: Cahn–Hilliard on a sphere."),
 )
 
-SYMBOLS = {"nu": "ν", "tau": "τ", "pi": "π", "epsilon": "ε", "theta": "ϑ", "alpha": "α", "beta": "β", "lambda": "λ",
-           "Gamma": "Γ", "Delta": "Δ", "kappa": "κ", "infinity": "∞", "grad": "∇", "sigma": "σ", "delta": "δ"}
+SYMBOLS = {"nu": "ν", "tau": "τ", "pi": "π", "epsilon": "ε", "theta": "ϑ", "alpha": "α", "beta": "β", "gamma": "γ",
+           "lambda": "λ", "Gamma": "Γ", "Delta": "Δ", "kappa": "κ", "infinity": "∞", "grad": "∇", "sigma": "σ", "delta": "δ"}

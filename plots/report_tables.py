@@ -83,7 +83,7 @@ def _columns(rows):
     columns = []
     for quantity, found in norms.items():
         shown = [norm for norm in SHOWN if norm in found] or sorted(found)[:1]
-        columns.append((f"{text(quantity)}, {NORMS.get(shown[0], text(shown[0]))}",
+        columns.append((f"{text(quantity.replace('_', ' '))}, {NORMS.get(shown[0], _plain(shown[0]))}",
                         lambda row, q=quantity, n=shown: _error(row.get("errors", {}).get(q, {}), n)))
     if columns:
         return columns
