@@ -12,7 +12,7 @@ import os
 import sys
 
 from report_content import BEYOND, PAPERS
-from report_data import SEVERITY, counts, place, read_results, verdict
+from report_data import BEYOND_STEMS, SEVERITY, counts, place, read_results, verdict
 from report_export import exports
 from report_html import number, picture, table, tag, text
 from report_tables import fits_table, provenance_table, runs_table
@@ -121,8 +121,7 @@ def paper_section(paper, placed, results, folder):
         parts.append(tag("h3", "Theorems and text") + claims_table(placed[paper.key, ""]))
     stems = [figure.stem for figure in paper.figures]
     stems += [stem for stem, entry in results.tables.items() if entry["paper"] == paper.key]
-    beyond = {figure.stem for figure in BEYOND}
-    stems = [stem for stem in dict.fromkeys(stems) if stem not in beyond]
+    stems = [stem for stem in dict.fromkeys(stems) if stem not in BEYOND_STEMS]
     own = [statement for stem in stems for statement in placed.get((paper.key, stem), [])]
     if own:
         parts.append(tag("h3", "Independent values, and findings of this project") + claims_table(own))
@@ -188,7 +187,7 @@ def report_html(results, folder):
             + (f" {results.elsewhere} more are checked at the other preset." if results.elsewhere else ""))
     missing = "".join(tag("li", html.escape(entry)) for entry in results.missing)
     head = [tag("h1", "Evolving surface finite elements: what four papers state, and what comes out"),
-            tag("p", f"esfem, {_today(results)}. {lead}", class_="lead"),
+            tag("p", f"esfem, {_date(results)}. {lead}", class_="lead"),
             tag("div", f"Not there: <ul>{missing}</ul>", class_="missing") if missing else "",
             tag("nav", tag("ol", contents)),
             tag("h3", "What holds", id="holds"), counts_table(placed),
@@ -206,7 +205,7 @@ def report_html(results, folder):
             + "</body></html>\n")
 
 
-def _today(results):
+def _date(results):
     """Of the newest table: the report of old results must not look new."""
     dates = [entry.get("provenance", {}).get("date", "") for entry in results.tables.values()]
     return number(max(dates, default="")[:10] or datetime.date.today().isoformat())
