@@ -23,6 +23,7 @@
 #include "bench/naive_step.hpp"
 #include "experiments/harness/library_environment.hpp"
 #include "solver/assembly/surface_space.hpp"
+#include "solver/constants.hpp"
 #include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
@@ -262,7 +263,7 @@ void cahn_hilliard_step(benchmark::State& state) {
   CahnHilliard flow(
       space, DoubleWell(), [&](double t) -> const Field& { return nodes.at(t); }, epsilon);
   History<CahnHilliardState> history(2);
-  const Field u0 = 0.1 * (2 * std::acos(-1.0) * mesh.nodes).array().cos().rowwise().prod();
+  const Field u0 = 0.1 * (turn * mesh.nodes).array().cos().rowwise().prod();
   CahnHilliardState next = cahn_hilliard_state(space, 0, mesh.nodes, u0, u0);
   history.push(next);
   int n = 1;

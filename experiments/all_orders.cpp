@@ -40,7 +40,6 @@
 #include "experiments/harness/all_orders_problems.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "solver/error.hpp"
 
 namespace {
@@ -193,12 +192,11 @@ int main(int argc, char** argv) {
       "step sizes, k = first, first + 1, first + 2, of which the first depends on flow and BDF. No units.\n"
       "Preset check: P2 with BDF2, and Dziuk's scheme with BDF4.\n\n"
       "Example: all_orders --flows willmore --degree 2 --bdf 3 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
+  experiment.add_options = [&](CommandLine& line) {
     std::vector<std::string> flows;
     for (const OrdersOfFlow& flow : orders_of_flows()) flows.push_back(flow.flow);
-    add_names_option(app, "--flows", flows, "all unless given", own.flows);
-    add_names_option(app, "--runs", known_runs, "space: orders in h | time: orders in tau; both unless given",
-                     own.runs);
+    line.names("--flows", flows, own.flows, "all unless given");
+    line.names("--runs", known_runs, own.runs, "space: orders in h | time: orders in tau; both unless given");
   };
   experiment.cells = [&](const Options& options) { return cells(planned_runs(options, own)); };
   experiment.parameters = parameters;

@@ -405,13 +405,12 @@ int main(int argc, char** argv) {
       "all\n"
       "combinations, where not given ritz_theta, linear elements, BDF3, level 1, i = 2..5.\n\n"
       "Example: cahn_hilliard_ellipsoid --bdf 3 --levels 0-2 --steps 2-4 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(
-        app, "--runs", known_runs,
-        "ritz_theta: Ritz maps and theta | interpolation: interpolated u, no theta | order: "
-        "errors against small steps | derivative: errors of d•u | printed: (8.3) without tau before its load",
-        own.runs);
-    add_quadrature_option(app, own.quadrature);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--runs", known_runs, own.runs,
+               "ritz_theta: Ritz maps and theta | interpolation: interpolated u, no theta | order: "
+               "errors against small steps | derivative: errors of d•u | printed: (8.3) without tau before "
+               "its load");
+    add_quadrature_option(line, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

@@ -24,9 +24,9 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/energy_series.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/flows/evolving_ellipsoid.hpp"
@@ -36,7 +36,7 @@ namespace {
 
 using namespace esfem;
 
-const double pi = std::acos(-1.0), epsilon = 0.1, largest_tau = 1e-4;
+const double epsilon = 0.1, largest_tau = 1e-4;
 const EvolvingEllipsoid moving_ellipsoid{0.25, 0.2, 1};
 const double paper_end = 1, figure_6_end = 0.2, settled = 0.4;
 const int recorded_times = 2000;
@@ -228,10 +228,8 @@ int main(int argc, char** argv) {
       "combinations, where\n"
       "not given of all levels, k = 0, BDF2, t to 1.\n\n"
       "Example: cahn_hilliard_energy --levels 4 --bdf 3 --end-time 0.2 --output energy.json";
-  experiment.add_options = [&](CLI::App& app) {
-    app.add_option("--end-time", own.end_time, "t at the end of each run")
-        ->check(positive_number())
-        ->group(method_group);
+  experiment.add_options = [&](CommandLine& line) {
+    line.positive("--end-time", own.end_time, "t at the end of each run");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

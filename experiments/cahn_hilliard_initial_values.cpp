@@ -30,7 +30,6 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "solver/analysis/energy_series.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
@@ -340,16 +339,12 @@ int main(int argc, char** argv) {
       "all combinations,\n"
       "where not given of all schemes, the constant unit, level 1, k = 0.\n\n"
       "Example: cahn_hilliard_initial_values --schemes ritz_theta --levels 0-2 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--schemes", known_schemes,
-                     "initial u by interpolation or Ritz map, without or with the correction theta",
-                     own.schemes);
-    add_names_option(app, "--constants", known_constants,
-                     "of the initial u: unit: max |u| = 1 | printed: 225/56693", own.constants);
-    app.add_option("--epsilon", own.epsilon, "of the equation")
-        ->check(positive_number())
-        ->capture_default_str()
-        ->group(method_group);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--schemes", known_schemes, own.schemes,
+               "initial u by interpolation or Ritz map, without or with the correction theta");
+    line.names("--constants", known_constants, own.constants,
+               "of the initial u: unit: max |u| = 1 | printed: 225/56693");
+    line.positive("--epsilon", own.epsilon, "of the equation");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

@@ -32,7 +32,6 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
@@ -82,7 +81,7 @@ struct Run {
 
 struct OwnOptions {
   std::vector<std::string> steppings;
-  double end_time = 0;
+  std::optional<double> end_time;
 };
 
 /// The times of the published run until its third published energy.
@@ -116,7 +115,7 @@ std::vector<Run> resolve(const Options& options, const OwnOptions& own) {
   if (options.bdf.value_or(2) > 2)
     throw InputError(format("--bdf: found %d, expected 1 or 2 for adaptive steps", *options.bdf));
   if (!options.degree && !options.levels && !options.steps && !options.bdf && own.steppings.empty() &&
-      own.end_time == 0)
+      !own.end_time)
     return preset_runs(options.preset);
   std::vector<Run> runs;
   for (const std::string& stepping :
@@ -127,9 +126,9 @@ std::vector<Run> resolve(const Options& options, const OwnOptions& own) {
       for (const int k : tolerances)
         runs.push_back({moose ? Stepping::moose : Stepping::adaptive, options.degree.value_or(1), level,
                         moose ? 1 : options.bdf.value_or(2), k,
-                        moose              ? moose_times().back()
-                        : own.end_time > 0 ? own.end_time
-                                           : steady_time});
+                        moose          ? moose_times().back()
+                        : own.end_time ? *own.end_time
+                                       : steady_time});
   }
   return runs;
 }
@@ -383,15 +382,11 @@ int main(int argc, char** argv) {
       "before; --steps k:\n"
       "tolerance 2e-3 2^-k of the steps. No units.\n\n"
       "Example: cahn_hilliard_pfhub --degree 2 --levels 0-2 --end 300 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(
-        app, "--stepping", known_steppings,
-        "adaptive: BDF2 with steps that follow the solution | moose: backward Euler with the steps of "
-        "the published run, to t = 30.263",
-        own.steppings);
-    app.add_option("--end", own.end_time, "end time of adaptive steps (default: 1.5e5)")
-        ->check(positive_number())
-        ->group(method_group);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--stepping", known_steppings, own.steppings,
+               "adaptive: BDF2 with steps that follow the solution | moose: backward Euler with the steps of "
+               "the published run, to t = 30.263");
+    line.positive("--end", own.end_time, "end time of adaptive steps (default: 1.5e5)");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) { return parameters(options.preset); };

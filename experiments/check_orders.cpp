@@ -145,13 +145,13 @@ Count check_table(const std::string& file, const std::string& folder, nlohmann::
 }
 
 int run(int argc, char** argv) {
-  CLI::App app(help, "check_orders");
   std::vector<std::string> tables;
   std::string folder = "reference", output;
-  app.add_option("TABLE", tables, "tables of results (JSON)")->required();
-  app.add_option("--reference", folder, "folder of the claims")->capture_default_str();
-  app.add_option("--output", output, "the verdicts as JSON, beside what is printed");
-  if (!parse_command_line(app, argc, argv)) return exit_done;
+  CommandLine line(help, "check_orders");
+  line.arguments("TABLE", tables, "tables of results (JSON)");
+  line.text("--reference", folder, "folder of the claims");
+  line.text("--output", output, "the verdicts as JSON, beside what is printed");
+  if (!line.parse(argc, argv)) return exit_done;
 
   Count total;
   nlohmann::json verdicts = nlohmann::json::array();

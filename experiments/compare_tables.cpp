@@ -62,23 +62,19 @@ int compare(const Table& table, const nlohmann::json& independent, int first, do
 
 int main(int argc, char** argv) {
   return guarded_main([&] {
-    CLI::App app(
-        "Compares the errors of a table with those of an independent implementation and prints both.\n"
-        "Example: compare_tables table.json reference/independent/table_mcf_sphere.json --from-step 3",
-        "compare_tables");
     std::string table, independent;
     int first = 0;
     double tolerance = 1e-3, floor = 1e-7;
-    app.add_option("table", table, "table of an experiment, with series")
-        ->required()
-        ->type_name("TABLE.json");
-    app.add_option("independent", independent, "the other table")->required()->type_name("OTHER.json");
-    app.add_option("--from-step", first, "the maxima are over the steps from this one on")
-        ->capture_default_str();
-    app.add_option("--tolerance", tolerance, "relative deviation allowed")->capture_default_str();
-    app.add_option("--floor", floor, "errors below this in both tables are not compared")
-        ->capture_default_str();
-    if (!parse_command_line(app, argc, argv)) return static_cast<int>(exit_done);
+    CommandLine line(
+        "Compares the errors of a table with those of an independent implementation and prints both.\n"
+        "Example: compare_tables table.json reference/independent/table_mcf_sphere.json --from-step 3",
+        "compare_tables");
+    line.argument("table", table, "table of an experiment, with series", "TABLE.json");
+    line.argument("independent", independent, "the other table", "OTHER.json");
+    line.integer("--from-step", 0, 1000000000, first, "the maxima are over the steps from this one on");
+    line.number("--tolerance", tolerance, "relative deviation allowed");
+    line.number("--floor", floor, "errors below this in both tables are not compared");
+    if (!line.parse(argc, argv)) return static_cast<int>(exit_done);
     return compare(table_from_json(read_json(table), table), read_json(independent), first, tolerance, floor);
   });
 }

@@ -392,16 +392,15 @@ int main(int argc, char** argv) {
       "combinations, where\n"
       "not given convergence, BDF3, level 0, k = 1..4.\n\n"
       "Example: coupled_diffusion --runs convergence --levels 0-2 --steps 1-4 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(
-        app, "--runs", known_runs,
+  experiment.add_options = [&](CommandLine& line) {
+    line.names(
+        "--runs", known_runs, own.runs,
         "convergence: (2.19) with g coupled additively | quotient: as printed | none: not coupled "
         "| extrapolation: as (2.18) prints it "
         "| difference: (7.2) minus (2.19) | cost: of (7.2) | growth: of an error in u | dynamic: dynamic "
         "velocity law | order: errors "
-        "against small steps",
-        own.runs);
-    add_quadrature_option(app, own.quadrature);
+        "against small steps");
+    add_quadrature_option(line, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

@@ -270,18 +270,16 @@ int evolve(const std::string& file, const json& origin) {
 int main(int argc, char** argv) {
   set_library_environment(argc, argv);
   return guarded_main([&] {
-    CLI::App app(
+    std::string file;
+    int threads = 1;
+    CommandLine line(
         "Evolves a surface: flow, surface or mesh, and method come from a JSON file.\n"
         "Example: evolve reference/examples/sphere.json\n\n" +
             evolve_config_help(),
         "evolve");
-    std::string file;
-    int threads = 1;
-    app.add_option("config", file, "the configuration")->required()->type_name("CONFIG.json");
-    app.add_option("--threads", threads, "threads that the factorisations may use")
-        ->check(CLI::Range(1, 1024))
-        ->capture_default_str();
-    if (!parse_command_line(app, argc, argv)) return static_cast<int>(exit_done);
+    line.argument("config", file, "the configuration", "CONFIG.json");
+    line.integer("--threads", 1, 1024, threads, "threads that the factorisations may use");
+    if (!line.parse(argc, argv)) return static_cast<int>(exit_done);
     return evolve(file, provenance(argc, argv));
   });
 }

@@ -270,15 +270,13 @@ int main(int argc, char** argv) {
       "one of them:\n"
       "all combinations, where not given convergence, both flows, grid, P2, BDF3, level 0, k = 1..3.\n\n"
       "Example: mcf_angenent_torus --flow mean_curvature --levels 0-2 --steps 3 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(
-        app, "--runs", known_runs,
-        "convergence: errors against the exact solution | order: at the end, against small steps", own.runs);
-    add_names_option(app, "--flow", known_flows, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6)",
-                     own.flows);
-    add_names_option(app, "--triangulation", known_meshes,
-                     "grid: uniform in arclength and angle | unstructured", own.meshes);
-    add_quadrature_option(app, own.quadrature);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--runs", known_runs, own.runs,
+               "convergence: errors against the exact solution | order: at the end, against small steps");
+    line.names("--flow", known_flows, own.flows, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6)");
+    line.names("--triangulation", known_meshes, own.meshes,
+               "grid: uniform in arclength and angle | unstructured");
+    add_quadrature_option(line, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

@@ -221,12 +221,10 @@ int main(int argc, char** argv) {
       "level j of the meshes has 2^j times as many triangles as level 0. No units.\n"
       "Without --surfaces, --schemes, --degree, --bdf, --levels, --steps: the runs of the preset.\n\n"
       "Example: mcf_competitors --surfaces sphere --schemes kll19,bgn --steps 0-3 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--surfaces", known_surfaces, "surfaces to start from", own.surfaces);
-    add_names_option(
-        app, "--schemes", known_schemes,
-        "kll19: (5.1) | dziuk: kll19 (3.6) | bgn: Barrett, Garcke, Nürnberg 2008, with BDF1 only",
-        own.schemes);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--surfaces", known_surfaces, own.surfaces, "surfaces to start from");
+    line.names("--schemes", known_schemes, own.schemes,
+               "kll19: (5.1) | dziuk: kll19 (3.6) | bgn: Barrett, Garcke, Nürnberg 2008, with BDF1 only");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) { return parameters(options.preset); };

@@ -315,13 +315,12 @@ int main(int argc, char** argv) {
       "where not given of all methods, level 0, k = 0, start substeps:16.\n"
       "With --output FILE.json the surfaces go to cells/mcf_dumbbell/CELL/surfaces.pvd beside it.\n\n"
       "Example: mcf_dumbbell --methods kll_normalised --levels 1 --steps 2 --output dumbbell.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--methods", known_methods,
-                     "dziuk: (3.6) | kll: (5.1) | kll_normalised | kll_interpolated: velocity | kll_alpha1, "
-                     "10, 100: with the stabilising "
-                     "term of §14 | "
-                     "bgn, bgn_p1: Barrett, Garcke, Nürnberg 2008, BDF1, P1: on triangles cut into four",
-                     methods);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--methods", known_methods, methods,
+               "dziuk: (3.6) | kll: (5.1) | kll_normalised | kll_interpolated: velocity | kll_alpha1, "
+               "10, 100: with the stabilising "
+               "term of §14 | "
+               "bgn, bgn_p1: Barrett, Garcke, Nürnberg 2008, BDF1, P1: on triangles cut into four");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, methods)); };
   experiment.parameters = [&](const Options& options) {

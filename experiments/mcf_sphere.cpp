@@ -271,10 +271,10 @@ int main(int argc, char** argv) {
       "edge\n"
       "lengths 0.5 2^(-j/2), level j = 0..4. Lengths and times have no units: v = -H nu.\n\n"
       "Example: mcf_sphere --preset check --levels 0 --steps 2-4 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--flow", known_flows,
-                     "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6); both unless given", own.flows);
-    add_quadrature_option(app, own.quadrature);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--flow", known_flows, own.flows,
+               "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6); both unless given");
+    add_quadrature_option(line, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

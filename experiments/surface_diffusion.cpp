@@ -31,9 +31,9 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/generate.hpp"
@@ -44,7 +44,7 @@ namespace {
 using namespace esfem;
 using State = WillmoreFlow::State;
 
-const double pi = std::acos(-1.0), largest_h = 0.5, limit_radius = std::cbrt(2.0), relaxation = 100;
+const double largest_h = 0.5, limit_radius = std::cbrt(2.0), relaxation = 100;
 const HalvedSteps time_steps{0.8, 0.01};
 
 Surface initial_surface() {
@@ -265,12 +265,11 @@ int main(int argc, char** argv) {
       "fixed steps.\n"
       "Without --settings, --levels, --steps, --mesh: the runs of the preset. No units.\n\n"
       "Example: surface_diffusion --settings relaxed --levels 0-2 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--settings", known_settings,
-                     "paper: fixed steps | unprojected: fixed steps, no projections | adaptive: adaptive "
-                     "steps | accurate: "
-                     "small adaptive steps | relaxed: adaptive steps and relaxation",
-                     settings);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--settings", known_settings, settings,
+               "paper: fixed steps | unprojected: fixed steps, no projections | adaptive: adaptive "
+               "steps | accurate: "
+               "small adaptive steps | relaxed: adaptive steps and relaxation");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, settings)); };
   experiment.parameters = [&](const Options& options) {

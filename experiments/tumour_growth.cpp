@@ -22,7 +22,6 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/mesh.hpp"
@@ -130,11 +129,8 @@ int main(int argc, char** argv) {
       "where there is\n"
       "activator. Step sizes 0.01 2^-k; level 0: 2,562 nodes, level 1: 10,242. No units.\n\n"
       "Example: tumour_growth --levels 0 --steps 1 --output tumour.json";
-  experiment.add_options = [&](CLI::App& app) {
-    app.add_option("--gamma", gamma, "size of the tumour: factor of the kinetics")
-        ->check(positive_number())
-        ->capture_default_str()
-        ->group(method_group);
+  experiment.add_options = [&](CommandLine& line) {
+    line.positive("--gamma", gamma, "size of the tumour: factor of the kinetics");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, gamma)); };
   experiment.parameters = [&](const Options& options) {

@@ -28,6 +28,7 @@
 #include "experiments/harness/grid.hpp"
 #include "experiments/harness/method_options.hpp"
 #include "experiments/harness/stationary_willmore.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
 
@@ -35,7 +36,6 @@ namespace {
 
 using namespace esfem;
 
-const double pi = std::acos(-1.0);
 const double major = 1, minor = std::sqrt(0.5);
 const double exact_energy = 4 * pi * pi;
 const HalvedSteps time_steps{1, 0.2};
@@ -239,17 +239,14 @@ int main(int argc, char** argv) {
       "combinations, where not\n"
       "given convergence, isothermal, extrapolated, no theta, BDF1, level 0, k = 2..3.\n\n"
       "Example: willmore_clifford_torus --runs convergence --levels 0-2 --steps 2 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--runs", known_runs,
-                     "convergence: Figure 7.4 | stability: the same, over tau | accuracy: about 1,936 nodes",
-                     own.runs);
-    add_names_option(
-        app, "--torus-mesh", known_meshes,
-        "isothermal: uniform in isothermal coordinates | graded: unstructured, finer at the hole",
-        own.meshes);
-    add_names_option(app, "--F", known_F, "F(x, u) w of (3.5a): extrapolated | implicit in w", own.F);
-    add_names_option(app, "--theta", known_theta, "the correction (3.7)", own.theta);
-    add_quadrature_option(app, own.quadrature);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--runs", known_runs, own.runs,
+               "convergence: Figure 7.4 | stability: the same, over tau | accuracy: about 1,936 nodes");
+    line.names("--torus-mesh", known_meshes, own.meshes,
+               "isothermal: uniform in isothermal coordinates | graded: unstructured, finer at the hole");
+    line.names("--F", known_F, own.F, "F(x, u) w of (3.5a): extrapolated | implicit in w");
+    line.names("--theta", known_theta, own.theta, "the correction (3.7)");
+    add_quadrature_option(line, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

@@ -33,6 +33,7 @@
 #include "experiments/harness/timed.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/analysis/run_recorder.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/bgn_willmore_flow.hpp"
 #include "solver/flows/dziuk_willmore_flow.hpp"
@@ -44,7 +45,7 @@ namespace {
 
 using namespace esfem;
 
-const double pi = std::acos(-1.0), minor_radius = std::sqrt(0.5);
+const double minor_radius = std::sqrt(0.5);
 const int recorded_steps = 50;
 
 /// A surface to start from, its meshes and step sizes, and the energy that the flow tends to.
@@ -287,12 +288,11 @@ int main(int argc, char** argv) {
       "on [0, 0.005]; level j of the meshes has 2^j times as many triangles as level 0. No units.\n"
       "Without --surfaces, --schemes, --degree, --levels, --steps: the runs of the preset.\n\n"
       "Example: willmore_competitors --surfaces sphere --schemes kll21,bgn --steps 0-3 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--surfaces", names(known_cases()), "surfaces to start from", own.surfaces);
-    add_names_option(app, "--schemes", known_schemes,
-                     "kll21: (3.4)-(3.5) | dziuk: Dziuk 2008, (2.13) | bgn: Barrett, Garcke, Nürnberg 2008, "
-                     "(2.14)",
-                     own.schemes);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--surfaces", names(known_cases()), own.surfaces, "surfaces to start from");
+    line.names("--schemes", known_schemes, own.schemes,
+               "kll21: (3.4)-(3.5) | dziuk: Dziuk 2008, (2.13) | bgn: Barrett, Garcke, Nürnberg 2008, "
+               "(2.14)");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) { return parameters(options.preset); };

@@ -30,9 +30,9 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/generate.hpp"
@@ -43,7 +43,7 @@ namespace {
 using namespace esfem;
 using State = WillmoreFlow::State;
 
-const double pi = std::acos(-1.0), end_time = 4, relaxation = 100;
+const double end_time = 4, relaxation = 100;
 const int fixed_step_exponent = 8;  // tau = 0.2 2^-8
 
 /// A surface to start from, its mesh, `scale` times as coarse as the published one, and where it tends to.
@@ -325,13 +325,12 @@ int main(int argc, char** argv) {
       "numbers of nodes, each further level half of them. No units.\n\n"
       "Example: willmore_relaxation --surfaces small_ellipsoid --settings relaxed --levels 0-2 --output "
       "table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--surfaces", names(known_cases()), "surfaces to start from", own.surfaces);
-    add_names_option(
-        app, "--settings", known_settings,
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--surfaces", names(known_cases()), own.surfaces, "surfaces to start from");
+    line.names(
+        "--settings", known_settings, own.settings,
         "paper: tau = 0.2 2^-8 | implicit: the same with F implicit, to t = 0.1 | adaptive: adaptive steps | "
-        "relaxed: adaptive steps and relaxation",
-        own.settings);
+        "relaxed: adaptive steps and relaxation");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

@@ -30,6 +30,7 @@
 #include "experiments/harness/method_options.hpp"
 #include "experiments/harness/stationary_willmore.hpp"
 #include "solver/analysis/diagnostics.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
 
@@ -39,7 +40,7 @@ using namespace esfem;
 using State = WillmoreFlow::State;
 
 const double largest_tau = 0.2;
-const double energy_of_spheres = 8 * std::acos(-1.0);
+const double energy_of_spheres = 8 * pi;
 
 /// The kinds of runs, as --runs names them and as rows are labelled, and the edge lengths of their level 0 on
 /// the unit sphere.
@@ -250,15 +251,13 @@ int main(int argc, char** argv) {
       "all\n"
       "combinations, where not given convergence, both projections, level 0, k = 2..3.\n\n"
       "Example: willmore_sphere --runs convergence --levels 0-2 --steps 2 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--runs", known_runs,
-                     "convergence: Figures 7.1, 7.3 | normals: Figure 7.2 | accuracy: as convergence, about "
-                     "2,500 nodes | theta: with the correction (3.7) | growth: of errors until R⁴, R = 1, "
-                     "1.5 | surface_diffusion: instead of Willmore flow",
-                     own.runs);
-    add_names_option(app, "--projection", known_projections, "of nu_h and z_h after each step",
-                     own.projections);
-    add_quadrature_option(app, own.quadrature);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--runs", known_runs, own.runs,
+               "convergence: Figures 7.1, 7.3 | normals: Figure 7.2 | accuracy: as convergence, about "
+               "2,500 nodes | theta: with the correction (3.7) | growth: of errors until R⁴, R = 1, "
+               "1.5 | surface_diffusion: instead of Willmore flow");
+    line.names("--projection", known_projections, own.projections, "of nu_h and z_h after each step");
+    add_quadrature_option(line, own.quadrature);
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

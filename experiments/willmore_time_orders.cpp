@@ -18,7 +18,6 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
@@ -148,9 +147,9 @@ int main(int argc, char** argv) {
       "and\n"
       "z_h, against small steps on the same mesh. Step sizes 0.1 2^-k, k = 1..6. No units.\n\n"
       "Example: willmore_time_orders --bdf 2 --steps 3-6 --output table.json";
-  experiment.add_options = [&](CLI::App& app) {
-    add_names_option(app, "--projection", known_projections,
-                     "none | projected: nu_h and z_h after each step; both unless given", own.projections);
+  experiment.add_options = [&](CommandLine& line) {
+    line.names("--projection", known_projections, own.projections,
+               "none | projected: nu_h and z_h after each step; both unless given");
   };
   experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
   experiment.parameters = [&](const Options& options) {

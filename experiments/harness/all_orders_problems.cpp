@@ -6,6 +6,7 @@
 #include "experiments/harness/mcf_columns.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/flows/dziuk_flow.hpp"
@@ -54,7 +55,6 @@ std::vector<double> graded_arclengths(int n) {
 /// The self-shrinking torus, twice as many cells around the axis as along the profile, whose edges are h long
 /// on average.
 Mesh angenent_grid(double h) {
-  const double two_pi = 2 * std::acos(-1.0);
   // Of an odd number of cells not all diagonals can alternate.
   const int n = 2 * static_cast<int>(std::lround(angenent_profile().length() / h / 2));
   const std::vector<double> s = graded_arclengths(n);
@@ -62,7 +62,7 @@ Mesh angenent_grid(double h) {
   for (int j = 0; j < mesh.nodes.rows(); ++j) {
     const double x = mesh.nodes(j, 0), y = mesh.nodes(j, 1), z = mesh.nodes(j, 2), rho = std::hypot(x, y);
     // The profile begins at the inner equator and goes upwards.
-    const int i = (static_cast<int>(std::lround(std::atan2(z, 2 - rho) / two_pi * n)) + n) % n;
+    const int i = (static_cast<int>(std::lround(std::atan2(z, 2 - rho) / turn * n)) + n) % n;
     const Eigen::Vector2d p = angenent_profile().at(s[i]).position;
     mesh.nodes.row(j) << p[0] * x / rho, p[0] * y / rho, p[1];
   }
@@ -178,7 +178,7 @@ struct WillmoreOnTorus {
 
  private:
   int cells(double h) const {
-    const double outer_equator = 2 * std::acos(-1.0) * (major + minor);
+    const double outer_equator = turn * (major + minor);
     return 2 * static_cast<int>(std::lround(outer_equator / h / 2));
   }
 };

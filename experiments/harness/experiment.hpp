@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "experiments/harness/command_line.hpp"
 #include "solver/analysis/fit_orders.hpp"
 #include "solver/analysis/table.hpp"
 #include "solver/time/integrate.hpp"
@@ -39,7 +39,7 @@ struct Cell {
 struct Experiment {
   std::string stem, paper;
   std::string help;  ///< what it computes, units, sample command lines: the head of --help
-  std::function<void(CLI::App&)> add_options = [](CLI::App&) {};  ///< options of this experiment alone
+  std::function<void(CommandLine&)> add_options = [](CommandLine&) {};  ///< options of this experiment alone
   std::function<std::vector<Cell>(const Options&)> cells;
   std::function<nlohmann::json(const Options&)> parameters;  ///< what the table's "parameters" say
   RowRange fit_range;

@@ -10,7 +10,6 @@
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/library_environment.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "experiments/harness/peak_memory.hpp"
 #include "experiments/harness/progress.hpp"
 #include "experiments/harness/provenance.hpp"
@@ -28,70 +27,44 @@ struct Request {
   int threads = 1;
 };
 
-void add_run_options(CLI::App& app, Request& request) {
-  const std::string group = "Run";
-  app.get_help_ptr()->group(group);
-  app.add_option("--preset", request.options.preset,
-                 "paper: as published; check: the smallest part that shows the orders")
-      ->check(CLI::IsMember({"check", "paper"}))
-      ->capture_default_str()
-      ->group(group);
-  auto* list = app.add_flag("--list", request.list,
-                            "print the cells, one a line: name and estimated seconds on one core, "
-                            "dearest first")
-                   ->group(group);
-  auto* cell = app.add_option("--cell", request.cell,
-                              "run this cell alone and write a table of one row; a run that fails "
-                              "numerically is a row with status \"failed: why\", and exit code 0")
-                   ->type_name("NAME")
-                   ->excludes(list)
-                   ->group(group);
-  app.add_option("--collect", request.collect_from,
-                 "run nothing: make the table from the files DIR/NAME.json of all cells")
-      ->type_name("DIR")
-      ->excludes(list)
-      ->excludes(cell)
-      ->group(group);
-  app.add_option("--output", request.output,
-                 "where the table (or list) goes; a table of all cells in FILE.json is written to "
-                 "FILE.csv and FILE.tex, too; - is standard output")
-      ->type_name("FILE")
-      ->capture_default_str()
-      ->group(group);
-  app.add_option("--threads", request.threads, "threads that the factorisations may use")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str()
-      ->group(group);
+void add_run_options(CommandLine& line, Request& request) {
+  line.group("Run");
+  line.one_of("--preset", {"check", "paper"}, request.options.preset,
+              "paper: as published; check: the smallest part that shows the orders");
+  line.flag("--list", request.list,
+            "print the cells, one a line: name and estimated seconds on one core, most expensive first");
+  line.text("--cell", request.cell,
+            "run this cell alone and write a table of one row; a run that fails numerically is a row with "
+            "status \"failed: why\", and exit code 0",
+            "NAME");
+  line.text("--collect", request.collect_from,
+            "run nothing: make the table from the files DIR/NAME.json of all cells", "DIR");
+  line.exclude("--cell", "--list");
+  line.exclude("--collect", "--list");
+  line.exclude("--collect", "--cell");
+  line.text("--output", request.output,
+            "where the table (or list) goes; a table of all cells in FILE.json is written to FILE.csv and "
+            "FILE.tex, too; - is standard output",
+            "FILE");
+  line.integer("--threads", 1, 1024, request.threads, "threads that the factorisations may use");
 }
 
-void add_method_options(CLI::App& app, Options& options) {
-  app.add_option("--degree", options.degree, "polynomial degree of the finite elements")
-      ->check(CLI::Range(1, 4))
-      ->group(method_group);
-  app.add_option("--bdf", options.bdf, "order of the backward difference formula")
-      ->check(CLI::Range(1, 5))
-      ->group(method_group);
-  app.add_option_function<std::string>(
-         "--levels", [&](const std::string& text) { options.levels = parse_list(text, "--levels"); },
-         "mesh levels, such as 0,1,2 or 0-4")
-      ->type_name("LIST")
-      ->group(method_group);
-  app.add_option_function<std::string>(
-         "--steps", [&](const std::string& text) { options.steps = parse_list(text, "--steps"); },
-         "exponents k of the step sizes tau_0 2^-k, such as 0,1 or 0-7")
-      ->type_name("LIST")
-      ->group(method_group);
-  app.add_option_function<std::string>(
-         "--start", [&](const std::string& text) { options.start = parse_start(text); },
-         "starting values: exact | cascade (lower orders, same step size) | substeps:K (step size tau/K)")
-      ->type_name("START")
-      ->group(method_group);
-  app.add_option("--mesh", options.meshes,
-                 "mesh file (Gmsh, OFF, OBJ, PLY, STL) instead of generated meshes; repeatable")
-      ->check(CLI::ExistingFile)
-      ->type_name("FILE")
-      ->allow_extra_args(false)
-      ->group(method_group);
+void add_method_options(CommandLine& line, Options& options) {
+  line.group("Method (not given: as in the preset)");
+  line.integer("--degree", 1, 4, options.degree, "polynomial degree of the finite elements");
+  line.integer("--bdf", 1, 5, options.bdf, "order of the backward difference formula");
+  line.parsed(
+      "--levels", [&](const std::string& text) { options.levels = parse_list(text, "--levels"); },
+      "mesh levels, such as 0,1,2 or 0-4", "LIST");
+  line.parsed(
+      "--steps", [&](const std::string& text) { options.steps = parse_list(text, "--steps"); },
+      "exponents k of the step sizes tau_0 2^-k, such as 0,1 or 0-7", "LIST");
+  line.parsed(
+      "--start", [&](const std::string& text) { options.start = parse_start(text); },
+      "starting values: exact | cascade (lower orders, same step size) | substeps:K (step size tau/K)",
+      "START");
+  line.files("--mesh", options.meshes,
+             "mesh file (Gmsh, OFF, OBJ, PLY, STL) instead of generated meshes; repeatable");
 }
 
 std::vector<Cell> checked_cells(const Experiment& experiment, const Options& options) {
@@ -107,7 +80,7 @@ std::vector<Cell> checked_cells(const Experiment& experiment, const Options& opt
   return cells;
 }
 
-std::vector<Cell> dearest_first(std::vector<Cell> cells) {
+std::vector<Cell> most_expensive_first(std::vector<Cell> cells) {
   std::stable_sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) { return a.cost > b.cost; });
   return cells;
 }
@@ -211,7 +184,8 @@ void answer(const Experiment& experiment, const Request& request, Table table) {
   const std::vector<Cell> cells = checked_cells(experiment, request.options);
   if (request.list) {
     std::string text;
-    for (const Cell& cell : dearest_first(cells)) text += format("%s %.2f\n", cell.name.c_str(), cell.cost);
+    for (const Cell& cell : most_expensive_first(cells))
+      text += format("%s %.2f\n", cell.name.c_str(), cell.cost);
     return write_file(request.output, text);
   }
   if (experiment.parameters) table.parameters = experiment.parameters(request.options);
@@ -233,11 +207,11 @@ int run_experiment(const Experiment& experiment, int argc, char** argv) {
   set_library_environment(argc, argv);
   return guarded_main([&] {
     Request request;
-    CLI::App app(experiment.help, experiment.stem);
-    add_run_options(app, request);
-    add_method_options(app, request.options);
-    experiment.add_options(app);
-    if (!parse_command_line(app, argc, argv)) return exit_done;
+    CommandLine line(experiment.help, experiment.stem);
+    add_run_options(line, request);
+    add_method_options(line, request.options);
+    experiment.add_options(line);
+    if (!line.parse(argc, argv)) return exit_done;
 
     Table table;
     table.experiment = experiment.stem;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "solver/linalg/least_squares.hpp"
+
 namespace esfem {
 
 void record_geometry(const SurfaceSpace& space, double t, const Field& x, Series& series) {
@@ -49,7 +51,7 @@ double squared_neck_radius(const Field& x, const Eigen::VectorXd& squared_radius
     terms.row(i) << 1, z, z * z, z * z * z * z;
     values[i] = squared_radius[nodes[i]];
   }
-  return terms.colPivHouseholderQr().solve(values)[0];
+  return least_squares(terms, values)[0];
 }
 
 }  // namespace
@@ -64,7 +66,7 @@ void record_profile(const Field& x, Series& series) {
 double fitted_sphere_radius(const Field& x) {
   Eigen::MatrixXd terms(x.rows(), 4);
   terms << 2 * x, Eigen::VectorXd::Ones(x.rows());
-  const Eigen::Vector4d fit = terms.colPivHouseholderQr().solve(x.rowwise().squaredNorm());
+  const Eigen::Vector4d fit = least_squares(terms, x.rowwise().squaredNorm());
   return std::sqrt(fit[3] + fit.head<3>().squaredNorm());
 }
 
@@ -73,7 +75,7 @@ TorusRadii fitted_torus_radii(const Field& x) {
   const Eigen::VectorXd rho = centred.leftCols(2).rowwise().norm();
   Eigen::MatrixXd terms(x.rows(), 2);
   terms << 2 * rho, Eigen::VectorXd::Ones(x.rows());
-  const Eigen::Vector2d fit = terms.colPivHouseholderQr().solve(centred.rowwise().squaredNorm());
+  const Eigen::Vector2d fit = least_squares(terms, centred.rowwise().squaredNorm());
   return {fit[0], std::sqrt(fit[1] + fit[0] * fit[0])};
 }
 

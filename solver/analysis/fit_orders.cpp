@@ -184,11 +184,18 @@ bool has_full_rank(ceres::Problem& problem, const std::vector<double*>& free) {
   options.apply_loss_function = false;
   ceres::CRSMatrix sparse;
   if (!problem.Evaluate(options, nullptr, nullptr, nullptr, &sparse)) return false;
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
+  // sigma² are the eigenvalues of J^T J, which is filled up with their mean: neither the least nor the
+  // largest.
+  Eigen::Matrix4d JTJ = Eigen::Matrix4d::Zero();
   for (int i = 0; i < sparse.num_rows; ++i)
-    for (int k = sparse.rows[i]; k < sparse.rows[i + 1]; ++k) jacobian(i, sparse.cols[k]) = sparse.values[k];
-  const Eigen::VectorXd sigma = jacobian.jacobiSvd().singularValues();
-  return std::pow(sigma.minCoeff() / sigma.maxCoeff(), 2) > smallest_condition;
+    for (int k = sparse.rows[i]; k < sparse.rows[i + 1]; ++k)
+      for (int l = sparse.rows[i]; l < sparse.rows[i + 1]; ++l)
+        JTJ(sparse.cols[k], sparse.cols[l]) += sparse.values[k] * sparse.values[l];
+  const int columns = sparse.num_cols;
+  const double mean = JTJ.trace() / columns;
+  for (int k = columns; k < 4; ++k) JTJ(k, k) = mean;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(JTJ, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[0] > smallest_condition * solver.eigenvalues()[3];
 }
 
 /// Standard errors of the free parameters; false when the data do not determine them.

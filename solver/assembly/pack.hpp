@@ -1,22 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#ifdef __AVX512F__
+#include <Eigen/Core>
+#include <cmath>
+
+#include "solver/config.hpp"
+
+#if ESFEM_PACK_SIZE == 8 && !defined(__AVX512F__)
+#error \
+    "esfem was built with AVX-512: compile with its flags (such as -march=native), or build it with ESFEM_NATIVE=OFF"
+#elif ESFEM_PACK_SIZE == 4 && !defined(__AVX__)
+#error \
+    "esfem was built with AVX: compile with its flags (such as -march=x86-64-v3), or build it with ESFEM_NATIVE=OFF"
+#endif
+#if ESFEM_PACK_SIZE == 8
 #include <immintrin.h>
 #endif
 
-#include <cmath>
-
 namespace esfem {
 
-// The widest vectors of the machine: GCC takes wider ones apart in memory, which is ten times slower.
-#if defined(__AVX512F__)
-constexpr int pack_size = 8;
-#elif defined(__AVX__)
-constexpr int pack_size = 4;
-#else
-constexpr int pack_size = 2;
-#endif
+/// The widest vectors of the machine that the library was configured for: GCC takes wider ones apart in
+/// memory, which is ten times slower. It is no matter of the flags of who includes this, because the library
+/// has to agree.
+constexpr int pack_size = ESFEM_PACK_SIZE;
+static_assert(EIGEN_MAX_ALIGN_BYTES == pack_size * sizeof(double),
+              "Eigen aligns memory as its flags say: compile with the same -m flags as esfem");
 
 /// One double per element of a batch (8 with AVX-512, 4 with AVX2, 2 with SSE2): arithmetic on a Pack is
 /// arithmetic on the elements of a batch at once, one instruction each. Scalars mix freely (2 * p, p + 1.0).
@@ -45,7 +53,7 @@ inline Pack sqrt(const Pack& p) {
 /// 1/sqrt(p) for p > 0, to the last bit or two; with AVX-512 by Newton steps, since the divider is the
 /// bottleneck of a quadrature point.
 inline Pack inverse_sqrt(const Pack& p) {
-#ifdef __AVX512F__
+#if ESFEM_PACK_SIZE == 8
   Pack y = _mm512_maskz_rsqrt14_pd(0xff, p);
   for (int step = 0; step < 2; ++step) y += 0.5 * y * (1.0 - p * y * y);
   return y;

@@ -18,8 +18,6 @@ namespace esfem {
 //   (1/2 w^T M w)' = w^T M w' + 1/2 w^T M'[phi] w = -B(w, phi) - 1/2 (|w|², div phi),
 // which is minus the right-hand side of (2.13).
 
-namespace {
-
 /// The matrix of B(w, phi) on Gamma_h[x]. Since grad x = I - nu nu^T, the functions phi_p e_a and phi_q e_b
 /// have
 ///   int (g_p . g_q) nu_a nu_b + (g_p)_a (g_q)_b - (g_p)_b (g_q)_a,   g = grad phi,
@@ -116,8 +114,6 @@ void AreaHessian::assemble(const Field& x) {
     scatter(b);
   }
 }
-
-}  // namespace
 
 /// With the old nodes x and w, both on the old surface, and the increments dx and dw, the two equations are
 ///   1/tau M dx - B dw = force(x, w),

@@ -3,13 +3,12 @@
 
 #include <cmath>
 
+#include "solver/constants.hpp"
 #include "solver/flows/ritz_map.hpp"
 
 namespace esfem {
 
 namespace {
-
-const double pi = std::acos(-1.0);
 
 /// d(x, t) of (9.2) at one time.
 struct LevelSet {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/growing_sphere.hpp"
 
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
 
 GrowingSphere::GrowingSphere(double t) {
-  const double pi = std::acos(-1.0);
   r = 1 + std::sin(pi * t) / 2;
   dr = pi * std::cos(pi * t) / 2;
   ddr = -pi * pi * std::sin(pi * t) / 2;

@@ -3,11 +3,13 @@
 
 #include <cmath>
 
+#include "solver/constants.hpp"
+
 namespace esfem {
 
 Eigen::VectorXd plane_waves(const Field& x, std::mt19937& engine) {
   const int waves = 20;
-  const double largest_wave_number = 4, pi = std::acos(-1.0);
+  const double largest_wave_number = 4;
   // The distributions of <random> differ from library to library, its engines do not.
   const auto between_minus_one_and_one = [&] { return 2.0 * engine() / std::mt19937::max() - 1; };
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(x.rows());

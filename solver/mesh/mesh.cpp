@@ -8,6 +8,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
 
@@ -121,7 +122,7 @@ void project_nodes(Mesh& mesh, const Surface& surface) {
 
 MeshQuality mesh_quality(const Connectivity& elements, const Field& x) {
   if (elements.rows() == 0) throw InputError("quality of a mesh without elements, at least one expected");
-  const double degrees = 180 / std::acos(-1.0);
+  const double degrees = 180 / pi;
   MeshQuality quality{0, INFINITY, 180, 0, INFINITY, 0};
   for (int e = 0; e < elements.rows(); ++e) {
     Vec3 side[3];

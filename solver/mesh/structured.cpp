@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/profile_grid.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
@@ -22,8 +23,6 @@ Mesh subdivide(const Mesh& mesh) {
 }
 
 namespace {
-
-const double turn = 2 * std::acos(-1.0);
 
 void put_on_sphere(Mesh& mesh, double radius) {
   for (int i = 0; i < mesh.nodes.rows(); ++i) mesh.nodes.row(i) *= radius / mesh.nodes.row(i).norm();

@@ -6,13 +6,13 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <cmath>
 
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
 
 namespace {
 
-const double turn = 2 * std::acos(-1.0);
 const int table_size = 1024;
 
 // The inner radius and the length for which the solution closes; its entropy is 1.85121667.
@@ -199,7 +199,7 @@ std::pair<double, double> extent_and_curvature() {
 Surface angenent_torus(double scale) {
   if (!(scale > 0) || !std::isfinite(scale))
     throw InputError(format("self-shrinking torus with scale %g; expected a positive number", scale));
-  static const auto [extent, curvature] = extent_and_curvature();
+  static const auto size = extent_and_curvature();
   Surface surface;
   surface.name = "angenent_torus";
   surface.parameters = {{"scale", scale}};
@@ -207,8 +207,8 @@ Surface angenent_torus(double scale) {
   surface.level = [scale](const Vec3& y) {
     return scale * angenent_profile().radial_level(std::hypot(y[0], y[1]) / scale, y[2] / scale);
   };
-  surface.bounding_radius = scale * extent;
-  surface.smallest_curvature_radius = scale / curvature;
+  surface.bounding_radius = scale * size.first;
+  surface.smallest_curvature_radius = scale / size.second;
   surface.euler_characteristic = 0;
   surface.own_closest_point = [scale](const Vec3& y) -> Vec3 {
     const HalfPlane x(y);

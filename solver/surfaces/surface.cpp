@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
@@ -188,8 +189,6 @@ Surface dumbbell() {
 }
 
 namespace {
-
-const double pi = std::acos(-1.0);
 
 /// The smallest radius of curvature in the points of a grid on the surface, less 0.1% for what lies between
 /// them: point(s, t) with s, t in [0, 1], ends included.

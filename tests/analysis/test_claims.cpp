@@ -13,7 +13,7 @@
 #include "solver/analysis/claims.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_claims {
 namespace {
 
 using nlohmann::json;
@@ -336,4 +336,4 @@ TEST_F(CheckOrders, VerdictsGoToAFileAsWell) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_claims

@@ -7,17 +7,16 @@
 #include <filesystem>
 
 #include "solver/analysis/energy_series.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/time/integrate.hpp"
 
-namespace esfem {
+namespace esfem::test_energy_series {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::ElementsAre;
-
-const double pi = std::acos(-1.0);
 
 /// f at 0, tau, .., steps tau.
 template <class Function>
@@ -143,4 +142,4 @@ TEST_F(ResumedEnergy, EqualsThatOfARunThatWasNotStopped) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_energy_series

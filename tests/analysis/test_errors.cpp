@@ -5,8 +5,9 @@
 
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/analysis/errors.hpp"
+#include "solver/constants.hpp"
 
-namespace esfem {
+namespace esfem::test_errors {
 namespace {
 
 /// Position, normal and a constant on a fixed surface, as an "evolution".
@@ -37,7 +38,7 @@ Mesh stretched_icosphere(int subdivisions) {
 
 /// Area of the ellipsoid (1, 1, 0.6), from its closed form.
 double oblate_area() {
-  const double pi = std::acos(-1.0), c = 0.6, e = std::sqrt(1 - c * c);
+  const double c = 0.6, e = std::sqrt(1 - c * c);
   return 2 * pi * (1 + c * c / e * std::atanh(e));
 }
 
@@ -86,7 +87,7 @@ TEST(NodalNorms, AreTheNormsOfTheDifference) {
   Field e(space.dofs(), 4);
   e << mesh.nodes, Eigen::VectorXd::Constant(space.dofs(), 2);
   const SquaredNorms norms = nodal_norms(M, A, e);
-  const double area = 4 * std::acos(-1.0);
+  const double area = 4 * pi;
   EXPECT_NEAR(norms.L2.head(3).sum(), area, 1e-3);
   EXPECT_NEAR(norms.H1_semi.head(3).sum(), 2 * area, 2e-3);  // grad id = P
   EXPECT_NEAR(norms.L2[3], 4 * area, 1e-3);
@@ -104,7 +105,7 @@ TEST(ErrorRecorder, KeepsTheMaximumOverTime) {
     w.col(9).array() += shifts[n];  // H
     recorder.record(0.1 * n, w);
   }
-  const double area = 4 * std::acos(-1.0) * (4 - 4 * 0.1);
+  const double area = 4 * pi * (4 - 4 * 0.1);
   const auto& H = recorder.maxima().at("H");
   EXPECT_NEAR(H.at("nodal_L2"), 0.3 * std::sqrt(area), 1e-3);
   EXPECT_NEAR(H.at("nodal_H1"), H.at("nodal_L2"), 1e-6);
@@ -123,7 +124,6 @@ TEST(Diagnostics, OfASphereAreItsClosedForms) {
   record_geometry(space, 0.5, mesh.nodes, series);
   record_curvature(space, mesh.nodes, Field::Ones(space.dofs(), 1), series);
   record_normal_length(mesh.nodes / 2, series);
-  const double pi = std::acos(-1.0);
   EXPECT_EQ(series.at("t")[0], 0.5);
   EXPECT_NEAR(series.at("area")[0], 16 * pi, 1e-3);
   EXPECT_NEAR(series.at("volume")[0], 32 * pi / 3, 1e-3);
@@ -133,4 +133,4 @@ TEST(Diagnostics, OfASphereAreItsClosedForms) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_errors

@@ -10,7 +10,7 @@
 #include "solver/analysis/fit_orders.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_fit_orders {
 namespace {
 
 using testing::AllOf, testing::HasSubstr;
@@ -266,4 +266,4 @@ TEST(FitTable, FitsEachVariantByItself) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_fit_orders

@@ -7,7 +7,7 @@
 #include "solver/analysis/table.hpp"
 #include "solver/mesh/generate.hpp"
 
-namespace esfem {
+namespace esfem::test_profile {
 namespace {
 
 TEST(Profile, OfTheDumbbell) {
@@ -89,4 +89,4 @@ TEST(PinchTime, IsNotThereWithoutAPinch) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_profile

@@ -13,7 +13,7 @@
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/time/adaptive.hpp"
 
-namespace esfem {
+namespace esfem::test_resumed_run {
 namespace {
 
 namespace fs = std::filesystem;
@@ -64,7 +64,7 @@ struct Outcome {
 template <class Flow>
 struct ResumedRun : testing::Test {
   using State = typename Flow::State;
-  using Outcome = esfem::Outcome<State>;
+  using Outcome = test_resumed_run::Outcome<State>;
   static constexpr int never = -1;
   fs::path folder = fs::path(testing::TempDir()) / ("esfem_resumed_" + std::to_string(getpid()));
   fs::path results = folder / "results";
@@ -166,4 +166,4 @@ TYPED_TEST(ResumedRun, StartsAfreshWhenASnapshotIsGone) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_resumed_run

@@ -7,9 +7,10 @@
 #include <filesystem>
 
 #include "solver/analysis/run_recorder.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_run_recorder {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,7 +43,7 @@ TEST_F(RunRecorderOnASphere, RecordsWhatTheFlowHasAndComputesTheRest) {
   const Field H = Field::Constant(space.dofs(), 1, 3);
   with_own.record(0, 0, mesh.nodes, {{"nu", 0.9 * mesh.nodes}, {"H", H}});
   EXPECT_EQ(with_own.series()["max_H"][0], 3) << "the flow's own";
-  EXPECT_NEAR(with_own.series()["willmore_energy"][0], 0.5 * 9 * 4 * std::acos(-1.0), 1e-2);
+  EXPECT_NEAR(with_own.series()["willmore_energy"][0], 0.5 * 9 * 4 * pi, 1e-2);
   EXPECT_NEAR(with_own.series()["min_nu"][0], 0.9, 1e-12);
   EXPECT_TRUE(with_own.snapshots().empty());
 }
@@ -52,7 +53,6 @@ TEST_F(RunRecorderOnASphere, TheEnergyOfTheSurfaceIsNotThatOfTheFlowsOwnCurvatur
   RunRecorder recorder(space, {}, RunRecorder::of_flow_and_surface);
   const Field H = Field::Constant(space.dofs(), 1, 3);
   recorder.record(0, 0, mesh.nodes, {{"nu", mesh.nodes}, {"H", H}});
-  const double pi = std::acos(-1.0);
   EXPECT_NEAR(recorder.series()["willmore_energy"][0], 18 * pi, 1e-2);
   EXPECT_NEAR(recorder.series()["kappa_energy"][0], 8 * pi, 0.1);
 }
@@ -109,4 +109,4 @@ TEST_F(RunRecorderOnASphere, GoesOnFromItsProgress) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_run_recorder

@@ -11,7 +11,7 @@
 #include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_table {
 namespace {
 
 using nlohmann::json;
@@ -197,4 +197,4 @@ TEST_F(TableFile, BadFilesAreErrorsWithTheLine) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_table

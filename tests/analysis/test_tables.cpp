@@ -8,7 +8,7 @@
 
 #include "solver/analysis/table.hpp"
 
-namespace esfem {
+namespace esfem::test_tables {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr, testing::Not;
@@ -132,4 +132,4 @@ TEST(Values, AreColumnsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_tables

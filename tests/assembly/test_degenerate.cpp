@@ -10,7 +10,7 @@
 #include "solver/error.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_degenerate {
 namespace {
 
 using testing::HasSubstr;
@@ -115,4 +115,4 @@ TEST(DegenerateP1, ScaleDoesNotMatter) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_degenerate

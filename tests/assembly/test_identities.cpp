@@ -6,13 +6,12 @@
 #include <cmath>
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/constants.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_identities {
 namespace {
-
-const double pi = std::acos(-1.0);
 
 /// Integral over Gamma_h of a pointwise formula of the nodal field u.
 template <int inputs, class Function>
@@ -140,4 +139,4 @@ TEST_P(IdentitiesOfDegree, RayleighQuotientOfASphericalHarmonic) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_identities

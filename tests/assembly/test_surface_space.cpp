@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_surface_space {
 namespace {
-
-const double pi = std::acos(-1.0);
 
 class SurfaceSpaceOfDegree : public testing::TestWithParam<int> {};
 INSTANTIATE_TEST_SUITE_P(Degrees, SurfaceSpaceOfDegree, testing::Values(1, 2, 3, 4));
@@ -163,4 +162,4 @@ TEST(SurfaceSpace, FieldsOfAnotherSizeAreRefused) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_surface_space

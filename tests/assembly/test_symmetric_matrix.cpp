@@ -5,7 +5,7 @@
 #include "solver/assembly/symmetric_matrix.hpp"
 #include "solver/mesh/mesh.hpp"
 
-namespace esfem {
+namespace esfem::test_symmetric_matrix {
 namespace {
 
 Eigen::MatrixXd dense(const SymmetricMatrix& matrix) {
@@ -77,4 +77,4 @@ TEST(Pack, FunctionsActLaneByLane) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_symmetric_matrix

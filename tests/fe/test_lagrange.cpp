@@ -7,7 +7,7 @@
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
 
-namespace esfem {
+namespace esfem::test_lagrange {
 namespace {
 
 using Points = Eigen::Matrix<double, Eigen::Dynamic, 2>;
@@ -118,4 +118,4 @@ TEST(LagrangeErrors, NameTheDegreeAndTheAcceptedOnes) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_lagrange

@@ -12,7 +12,7 @@
 #include "solver/fe/lagrange.hpp"
 #include "solver/fe/quadrature.hpp"
 
-namespace esfem {
+namespace esfem::test_quadrature {
 namespace {
 
 using testing::HasSubstr;
@@ -174,4 +174,4 @@ TEST(VertexQuadrature, LumpsTheMassMatrixOfP1) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_quadrature

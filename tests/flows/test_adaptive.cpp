@@ -9,7 +9,7 @@
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/time/adaptive.hpp"
 
-namespace esfem {
+namespace esfem::test_adaptive {
 namespace {
 
 struct Shrinking {
@@ -97,4 +97,4 @@ TEST(AdaptiveFlows, StepsGetSmallTowardsASingularity) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_adaptive

@@ -11,7 +11,7 @@
 #include "solver/mesh/profile_grid.hpp"
 #include "solver/time/integrate.hpp"
 
-namespace esfem {
+namespace esfem::test_angenent_torus_orders {
 namespace {
 
 const std::string quantities[] = {"x", "v", "nu", "H"};
@@ -94,4 +94,4 @@ TEST(AngenentTorusOrders, NeitherDziuksSchemeNorParticlesOnRaysHaveThem) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_angenent_torus_orders

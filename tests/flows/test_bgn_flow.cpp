@@ -13,7 +13,7 @@
 #include "tests/flows/bgn_schemes.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_bgn_flow {
 namespace {
 
 using testing::HasSubstr;
@@ -200,4 +200,4 @@ TEST(BgnFlow, ARunEndsAtThePinch) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_bgn_flow

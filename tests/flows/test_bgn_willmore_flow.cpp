@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "solver/constants.hpp"
 #include "solver/flows/bgn_willmore_flow.hpp"
 #include "solver/flows/discrete_curvature.hpp"
 #include "solver/surfaces/surface.hpp"
@@ -12,13 +13,11 @@
 #include "tests/flows/bgn_schemes.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_bgn_willmore_flow {
 namespace {
 
 using testing::HasSubstr;
 using State = BgnWillmoreFlow::State;
-
-const double pi = std::acos(-1.0);
 
 State run(const Mesh& mesh, const Quadrature& rule, double tau, int steps) {
   const SurfaceSpace space(mesh, rule);
@@ -227,4 +226,4 @@ TEST(BgnWillmoreFlow, CliffordTorusStaysUpToTheErrorInSpace) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_bgn_willmore_flow

@@ -11,7 +11,7 @@
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_cahn_hilliard {
 namespace {
 
 using State = CahnHilliardState;
@@ -340,4 +340,4 @@ TEST(CahnHilliard, SaysWhatItDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_cahn_hilliard

@@ -8,7 +8,7 @@
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_cahn_hilliard_orders {
 namespace {
 
 using State = CahnHilliardState;
@@ -145,4 +145,4 @@ TEST(CahnHilliard, ThetaLetsWBeginWhereItShould) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_cahn_hilliard_orders

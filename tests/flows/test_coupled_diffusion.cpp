@@ -11,7 +11,7 @@
 #include "tests/flows/reference_case.hpp"
 #include "tests/flows/semi_discrete_solution.hpp"
 
-namespace esfem {
+namespace esfem::test_coupled_diffusion {
 namespace {
 
 using testing::ElementsAre;
@@ -393,4 +393,4 @@ TEST(CoupledDiffusion, NodalFieldsHaveTheNamesOfTheSpecies) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_coupled_diffusion

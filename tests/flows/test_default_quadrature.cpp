@@ -9,7 +9,7 @@
 #include "solver/mesh/generate.hpp"
 #include "solver/time/integrate.hpp"
 
-namespace esfem {
+namespace esfem::test_default_quadrature {
 namespace {
 
 /// Errors of ten steps of the sphere experiment (small ones, so that the spatial error shows) on the coarsest
@@ -63,4 +63,4 @@ TEST(DefaultQuadrature, AWeakerRuleIsSeen) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_default_quadrature

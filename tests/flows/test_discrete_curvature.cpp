@@ -7,7 +7,7 @@
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_discrete_curvature {
 namespace {
 
 /// L2 norms on the discrete surface of the differences to the exact surface's nodal values.
@@ -119,4 +119,4 @@ TEST_P(CurvatureOfEllipsoid, FollowsScalingAndReflectionOfTheSurface) {
 INSTANTIATE_TEST_SUITE_P(Degrees, CurvatureOfEllipsoid, testing::Values(1, 2, 3));
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_discrete_curvature

@@ -3,11 +3,12 @@
 
 #include <cmath>
 
+#include "solver/constants.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_dziuk_flow {
 namespace {
 
 using State = DziukFlow::State;
@@ -118,7 +119,7 @@ double growth_of_tangential_motion(const Mesh& mesh, int q, double tau, int step
 // eigenvalues of different sign. For v = phi nu these are -phi² (kappa_1 - kappa_2)² and, in all, |grad phi|²
 // + 2 K phi²: with phi large where K < 0, on the inside of a torus, the form is negative.
 TEST(DziukFlow, ItsDifferentiatedFormIsNotElliptic) {
-  const double major = 2, minor = 1, c = 0.5, pi = std::acos(-1.0), epsilon = 1e-4;
+  const double major = 2, minor = 1, c = 0.5, epsilon = 1e-4;
   const Mesh mesh = torus_mesh(major, minor, 2, 60, 30);
   const SurfaceSpace space(mesh);
   Field v(mesh.nodes.rows(), 3);
@@ -172,4 +173,4 @@ TEST(DziukFlow, ARunEndsWhereItsMeshFolds) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_dziuk_flow

@@ -4,19 +4,18 @@
 
 #include <cmath>
 
+#include "solver/constants.hpp"
 #include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_willmore_flow.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_dziuk_willmore_flow {
 namespace {
 
 using testing::HasSubstr;
 using State = DziukWillmoreFlow::State;
-
-const double pi = std::acos(-1.0);
 
 /// -M(x)^-1 A(x) x
 Field discrete_w(const SurfaceSpace& space, const Field& x) {
@@ -291,4 +290,4 @@ TEST(DziukWillmoreFlow, ForceConvergesToTheFirstVariation) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_dziuk_willmore_flow

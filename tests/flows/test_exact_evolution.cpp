@@ -9,7 +9,7 @@
 #include "solver/mesh/mesh.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
 
-namespace esfem {
+namespace esfem::test_exact_evolution {
 namespace {
 
 /// The largest difference of a value or gradient to what the surface's level set says, in the nodes x.
@@ -140,4 +140,4 @@ TEST(ShrinkingAngenentTorus, EndsWhereItHasShrunkToAPoint) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_exact_evolution

@@ -11,7 +11,7 @@
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_linearised_cahn_hilliard {
 namespace {
 
 using State = CahnHilliardState;
@@ -171,4 +171,4 @@ TEST(LinearisedCahnHilliard, SaysWhatItDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_linearised_cahn_hilliard

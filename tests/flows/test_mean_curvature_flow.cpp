@@ -7,7 +7,7 @@
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_mean_curvature_flow {
 namespace {
 
 using State = MeanCurvatureFlow::State;
@@ -122,4 +122,4 @@ TEST(MeanCurvatureFlow, StepsInATimeAfterTheCollapseAreAnError) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_mean_curvature_flow

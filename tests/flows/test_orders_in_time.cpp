@@ -8,7 +8,7 @@
 #include "tests/flows/reference_case.hpp"
 #include "tests/flows/semi_discrete_solution.hpp"
 
-namespace esfem {
+namespace esfem::test_orders_in_time {
 namespace {
 
 const SurfaceSpace& space() {
@@ -82,4 +82,4 @@ TEST(WillmoreFlowInTime, ProjectionAfterEachStepSpoilsTheOrder) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_orders_in_time

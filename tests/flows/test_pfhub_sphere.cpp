@@ -2,10 +2,11 @@
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
+#include "solver/constants.hpp"
 #include "solver/flows/pfhub_sphere.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_pfhub_sphere {
 namespace {
 
 TEST(PfhubSphere, DerivativesOfThePotential) {
@@ -45,9 +46,8 @@ TEST(PfhubSphere, EnergyOfAGreatCircle) {
     c(j) = 0.5 + 0.2 * std::tanh(s / std::sqrt(5));
   }
   const double sigma = std::sqrt(2 * PfhubSphere::kappa * 5) * std::pow(0.4, 3) / 6;
-  EXPECT_NEAR(pfhub_energy(space, mesh.nodes, c) / (2 * std::acos(-1) * PfhubSphere::radius * sigma), 1,
-              0.01);
+  EXPECT_NEAR(pfhub_energy(space, mesh.nodes, c) / (turn * PfhubSphere::radius * sigma), 1, 0.01);
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_pfhub_sphere

@@ -8,7 +8,7 @@
 #include "solver/flows/regularity.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_regularity {
 namespace {
 
 using testing::HasSubstr;
@@ -138,4 +138,4 @@ TEST_F(Regularity, FoldedExtrapolationIsASingularityAndNamed) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_regularity

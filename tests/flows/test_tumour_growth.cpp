@@ -8,7 +8,7 @@
 #include "solver/mesh/mesh.hpp"
 #include "solver/time/integrate.hpp"
 
-namespace esfem {
+namespace esfem::test_tumour_growth {
 namespace {
 
 struct TumourOnTheUnitSphere : testing::Test {
@@ -89,4 +89,4 @@ TEST_F(TumourOnTheUnitSphere, StartsFromTheSameDisturbanceOnEveryMesh) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_tumour_growth

@@ -13,7 +13,7 @@
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 
-namespace esfem {
+namespace esfem::test_willmore_flow {
 namespace {
 
 using Variant = WillmoreFlow::Variant;
@@ -370,4 +370,4 @@ TEST(WillmoreFlow, SaysWhatItDoesNotTake) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_willmore_flow

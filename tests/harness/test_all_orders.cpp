@@ -8,10 +8,11 @@
 #include "experiments/harness/all_orders_problems.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/claims.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "tests/time/linear_ode.hpp"
 
-namespace esfem {
+namespace esfem::test_all_orders {
 namespace {
 
 /// Of an equation without error in space, against BDF5 with 1,024 steps.
@@ -51,7 +52,7 @@ TEST(LargestDifferencesTest, AreTheNormsOfTheColumnsOfAQuantity) {
   project_nodes(mesh, sphere(1));
   const SurfaceSpace space(mesh);
   LargestDifferences differences(space, {{"c", 1}, {"x", 3}});
-  const double area = 4 * std::acos(-1.0);
+  const double area = 4 * pi;
   for (const double factor : {0.5, 2.0, 1.0}) {
     Field columns(mesh.nodes.rows(), 4);
     columns << Field::Constant(mesh.nodes.rows(), 1, 3), factor * mesh.nodes;
@@ -122,4 +123,4 @@ TEST(AllOrders, DziuksSchemeIsUnstableWithBdf5) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_all_orders

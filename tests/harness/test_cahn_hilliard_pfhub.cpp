@@ -12,7 +12,7 @@
 #include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_cahn_hilliard_pfhub {
 namespace {
 
 namespace fs = std::filesystem;
@@ -76,4 +76,4 @@ TEST(CahnHilliardPfhub, RecordsEnergiesDomainsAndSnapshots) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_cahn_hilliard_pfhub

@@ -13,7 +13,7 @@
 #include "experiments/harness/experiment.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_energy_and_initial_values {
 namespace {
 
 namespace fs = std::filesystem;
@@ -105,4 +105,4 @@ TEST_F(Programs, InitialValuesDifferByWhatTheSchemesSay) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_energy_and_initial_values

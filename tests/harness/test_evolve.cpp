@@ -12,9 +12,10 @@
 #include <iterator>
 
 #include "solver/analysis/table.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_evolve {
 namespace {
 
 using nlohmann::json;
@@ -65,7 +66,7 @@ TEST_F(Evolve, WritesNodalValuesAndSeries) {
        {"t", "area", "volume", "willmore_energy", "max_H", "min_nu", "max_nu", "worst_angle"}) {
     EXPECT_EQ(history.at(key).size(), 5u) << key;
   }
-  EXPECT_NEAR(history.at("area")[4].get<double>(), 4 * std::acos(-1.0) * radius * radius, 2e-2);
+  EXPECT_NEAR(history.at("area")[4].get<double>(), 4 * pi * radius * radius, 2e-2);
   EXPECT_TRUE(end.contains("provenance"));
 }
 
@@ -110,7 +111,7 @@ TEST_F(Evolve, RunsAllFlowsOfMeanCurvature) {
     ASSERT_EQ(run(config({{"flow", flow}, {"bdf", bdf}})), exit_done) << message;
     const json end = read_json(nodal), history = read_json(series);
     EXPECT_NEAR(history.at("max_H")[4].get<double>(), 2 / radius, 0.15) << flow;
-    EXPECT_NEAR(history.at("area")[4].get<double>(), 4 * std::acos(-1.0) * radius * radius, 0.1) << flow;
+    EXPECT_NEAR(history.at("area")[4].get<double>(), 4 * pi * radius * radius, 0.1) << flow;
     EXPECT_EQ(end.contains("nu"), std::string(flow) == "mean_curvature");
     EXPECT_EQ(end.contains("H"), std::string(flow) != "dziuk");
     EXPECT_EQ(history.at("status"), "ok");
@@ -122,8 +123,8 @@ TEST_F(Evolve, RunsAllFlowsOfMeanCurvature) {
 TEST_F(Evolve, RunsTheCoupledFlow) {
   ASSERT_EQ(run(config({{"flow", "coupled_diffusion"}})), exit_done) << message;
   const json end = read_json(nodal);
-  const double radius = 1 + 0.5 * std::sin(std::acos(-1.0) * 0.04);
-  EXPECT_NEAR(std::sqrt(read_json(series).at("area")[4].get<double>() / (4 * std::acos(-1.0))), radius, 1e-3);
+  const double radius = 1 + 0.5 * std::sin(pi * 0.04);
+  EXPECT_NEAR(std::sqrt(read_json(series).at("area")[4].get<double>() / (4 * pi)), radius, 1e-3);
   EXPECT_EQ(end.at("u").size(), end.at("x").size());
   ASSERT_EQ(run(config({{"flow", "coupled_diffusion"}, {"variant", {{"mass", "reassembled"}}}})), exit_done)
       << message;
@@ -149,7 +150,7 @@ TEST_F(Evolve, RunsFlowsOfFourthOrder) {
   json willmore = config({{"flow", "willmore"}, {"start", "cascade"}});
   ASSERT_EQ(run(willmore), exit_done) << message;
   const json end = read_json(nodal), history = read_json(series);
-  EXPECT_NEAR(history.at("willmore_energy")[4].get<double>(), 8 * std::acos(-1.0), 0.05);
+  EXPECT_NEAR(history.at("willmore_energy")[4].get<double>(), 8 * pi, 0.05);
   EXPECT_EQ(history.at("kappa_energy").size(), 5u);
   for (const char* key : {"v", "nu", "H", "V", "z"}) EXPECT_EQ(end.at(key).size(), end.at("x").size());
   EXPECT_NEAR(end.at("H")[0].get<double>(), 2, 1e-12) << "with theta the sphere is stationary";
@@ -316,8 +317,8 @@ TEST_F(Evolve, RunsAMeshOfWhichNoExactSurfaceIsKnown) {
   ASSERT_EQ(run(configuration), exit_done) << message;
   EXPECT_THAT(message, HasSubstr("computed on the discrete surface"));
   const json history = read_json(series);
-  EXPECT_NEAR(history.at("area")[2].get<double>(), 4 * std::acos(-1.0) * (4 - 4 * 0.02), 0.2);
+  EXPECT_NEAR(history.at("area")[2].get<double>(), 4 * pi * (4 - 4 * 0.02), 0.2);
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_evolve

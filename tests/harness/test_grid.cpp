@@ -10,7 +10,7 @@
 #include "experiments/harness/method_options.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_grid {
 namespace {
 
 namespace fs = std::filesystem;
@@ -180,35 +180,41 @@ TEST_F(Recorded, FailureBeforeAnyStepPassesThrough) {
   EXPECT_THROW(run_to_end([] { throw NumericsError("not definite"); }, recorder), NumericsError);
 }
 
+/// Parses "--flow a" as the command line of a program.
+void parse(CommandLine& line, const std::vector<const char*>& arguments) {
+  std::vector<const char*> all = {"program"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  line.parse(int(all.size()), all.data());
+}
+
 TEST(MethodOptions, NamesAreAListOfKnownOnes) {
-  const std::vector<std::string> known = {"a", "b", "c"};
-  const auto parse = [&](const std::string& arguments) {
+  const auto names = [](const std::vector<const char*>& arguments) {
     std::vector<std::string> names;
-    CLI::App app;
-    add_names_option(app, "--flow", known, "help", names);
-    app.parse(arguments);
+    CommandLine line("help", "program");
+    line.names("--flow", {"a", "b", "c"}, names, "help");
+    parse(line, arguments);
     return names;
   };
-  EXPECT_THAT(parse(""), IsEmpty());
-  EXPECT_THAT(parse("--flow c,a"), ElementsAre("c", "a"));
-  EXPECT_THROW(parse("--flow a,d"), CLI::ValidationError);
+  EXPECT_THAT(names({}), IsEmpty());
+  EXPECT_THAT(names({"--flow", "c,a"}), ElementsAre("c", "a"));
+  EXPECT_THROW(names({"--flow", "a,d"}), InputError);
 }
 
 TEST(MethodOptions, QuadratureIsThatOfTheDegreeUnlessGiven) {
-  const auto parse = [](const std::string& arguments, int degree) {
+  const auto rule = [](const std::vector<const char*>& arguments, int degree) {
     std::string rule;
-    CLI::App app;
-    add_quadrature_option(app, rule);
-    app.parse(arguments);
+    CommandLine line("help", "program");
+    add_quadrature_option(line, rule);
+    parse(line, arguments);
     return quadrature_or_default(rule, degree).name;
   };
   EXPECT_NE(default_quadrature(1).name, default_quadrature(3).name);
   for (int degree : {1, 3}) {
-    EXPECT_EQ(parse("", degree), default_quadrature(degree).name);
-    EXPECT_EQ(parse("--quadrature conical:5", degree), conical_quadrature(5).name);
+    EXPECT_EQ(rule({}, degree), default_quadrature(degree).name);
+    EXPECT_EQ(rule({"--quadrature", "conical:5"}, degree), conical_quadrature(5).name);
   }
-  EXPECT_THROW(parse("--quadrature soon", 2), InputError);
+  EXPECT_THROW(rule({"--quadrature", "soon"}, 2), InputError);
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_grid

@@ -8,7 +8,7 @@
 #include "experiments/harness/experiment.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_guarded_main {
 namespace {
 
 template <class Error>
@@ -42,4 +42,4 @@ TEST(ParseList, RefusesWhatIsNotAList) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_guarded_main

@@ -12,7 +12,7 @@
 #include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_mcf_dumbbell {
 namespace {
 
 namespace fs = std::filesystem;
@@ -65,4 +65,4 @@ TEST(McfDumbbell, KeepsWhatItHasComputedUntilTheSingularity) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_mcf_dumbbell

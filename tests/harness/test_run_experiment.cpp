@@ -14,7 +14,7 @@
 
 #include "solver/analysis/table.hpp"
 
-namespace esfem {
+namespace esfem::test_run_experiment {
 namespace {
 
 namespace fs = std::filesystem;
@@ -260,4 +260,4 @@ TEST_F(RunExperiment, ThreadsAreThoseAskedFor) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_run_experiment

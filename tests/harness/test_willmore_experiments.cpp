@@ -11,15 +11,16 @@
 #include <filesystem>
 
 #include "experiments/harness/stationary_willmore.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 
-namespace esfem {
+namespace esfem::test_willmore_experiments {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::StartsWith;
 
-const double energy_of_spheres = 8 * std::acos(-1.0);
+const double energy_of_spheres = 8 * pi;
 
 struct StationarySphere : testing::Test {
   Mesh mesh = [] {
@@ -145,4 +146,4 @@ TEST(WillmoreCliffordTorus, ImplicitCouplingEndsBeforeItsTime) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_willmore_experiments

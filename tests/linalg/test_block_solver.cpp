@@ -14,7 +14,7 @@
 #include "solver/linalg/metis_ordering.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_block_solver {
 namespace {
 
 using testing::HasSubstr;
@@ -214,4 +214,4 @@ TEST(BlockSolver, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_block_solver

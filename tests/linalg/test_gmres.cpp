@@ -5,7 +5,7 @@
 #include "solver/error.hpp"
 #include "solver/linalg/gmres.hpp"
 
-namespace esfem {
+namespace esfem::test_gmres {
 namespace {
 
 /// I - B with a B that is not symmetric and larger than 1 in norm: Neumann's series would diverge.
@@ -42,4 +42,4 @@ TEST(Gmres, SaysWhenItDoesNotConverge) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_gmres

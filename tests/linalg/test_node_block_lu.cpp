@@ -9,7 +9,7 @@
 #include "solver/linalg/node_block_lu.hpp"
 #include "solver/mesh/mesh.hpp"
 
-namespace esfem {
+namespace esfem::test_node_block_lu {
 namespace {
 
 using testing::HasSubstr;
@@ -63,4 +63,4 @@ TEST_F(NodeBlockLuTest, ASingularMatrixIsAnError) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_node_block_lu

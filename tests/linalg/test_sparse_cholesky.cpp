@@ -14,7 +14,7 @@
 #include "solver/linalg/sparse_cholesky.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_sparse_cholesky {
 namespace {
 
 using testing::HasSubstr;
@@ -139,4 +139,4 @@ TEST(SparseCholesky, StartsThreadsOnlyWhenAsked) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_sparse_cholesky

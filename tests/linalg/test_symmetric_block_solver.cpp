@@ -10,7 +10,7 @@
 #include "solver/linalg/symmetric_block_solver.hpp"
 #include "tests/assembly/meshes.hpp"
 
-namespace esfem {
+namespace esfem::test_symmetric_block_solver {
 namespace {
 
 using testing::HasSubstr;
@@ -93,4 +93,4 @@ TEST(SymmetricBlockSolver, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_symmetric_block_solver

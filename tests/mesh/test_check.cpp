@@ -9,7 +9,8 @@
 #include "solver/mesh/read.hpp"
 #include "tests/mesh/topology.hpp"
 
-using namespace esfem;
+namespace esfem::test_check {
+
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -210,3 +211,5 @@ TEST_P(InwardMesh, IsTurned) {
   const double off_sphere = (lagrange_mesh(outward, 4).nodes.rowwise().norm().array() - 1).abs().maxCoeff();
   EXPECT_NEAR((fine.nodes.rowwise().norm().array() - 1).abs().maxCoeff(), off_sphere, 1e-12);
 }
+
+}  // namespace esfem::test_check

@@ -12,7 +12,8 @@
 #include "solver/mesh/relax.hpp"
 #include "tests/mesh/topology.hpp"
 
-using namespace esfem;
+namespace esfem::test_generate {
+
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -257,3 +258,5 @@ TEST(Relax, RefusesAnOpenOrTwistedMesh) {
   std::swap(twisted.elements(5, 0), twisted.elements(5, 1));
   EXPECT_THAT(message_of<NumericsError>([&] { relaxed(twisted); }), HasSubstr("opposite orientation"));
 }
+
+}  // namespace esfem::test_generate

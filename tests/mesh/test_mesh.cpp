@@ -4,11 +4,12 @@
 #include <cmath>
 #include <map>
 
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
 #include "solver/mesh/mesh.hpp"
 
-using namespace esfem;
+namespace esfem::test_mesh {
 
 namespace {
 
@@ -143,7 +144,7 @@ TEST(MeshQuality, OfARightTriangleBesideAnEquilateralOne) {
   // Sides 3, 4, 5: inradius 1, circumradius 5/2.
   EXPECT_NEAR(q.min_radius_ratio, 0.8, 1e-15);
   EXPECT_NEAR(q.mean_radius_ratio, 0.9, 1e-15);
-  EXPECT_NEAR(q.min_angle, std::atan(0.75) * 180 / std::acos(-1.0), 1e-12);
+  EXPECT_NEAR(q.min_angle, std::atan(0.75) * 180 / pi, 1e-12);
   EXPECT_EQ(q.h, 5);
   EXPECT_NEAR(q.h_min, std::sqrt(2.0), 1e-15);
   EXPECT_EQ(q.worst_element, 1);
@@ -151,14 +152,14 @@ TEST(MeshQuality, OfARightTriangleBesideAnEquilateralOne) {
 
 TEST(MeshQuality, FindsTheSmallestAngleAtEachCorner) {
   // Angles 20, 70, 90 degrees; each corner in turn has the smallest.
-  const double opposite = std::tan(20 * std::acos(-1.0) / 180);
+  const double opposite = std::tan(20 * pi / 180);
   const Field triangle = (Field(3, 3) << 0, 0, 0, 1, 0, 0, 1, 0, opposite).finished();
   for (int turn = 0; turn < 3; ++turn) {
     const Connectivity element = (Connectivity(1, 3) << turn, (turn + 1) % 3, (turn + 2) % 3).finished();
     EXPECT_NEAR(mesh_quality(element, triangle).min_angle, 20, 1e-12) << turn;
   }
   // Two equal angles of 15 degrees: together with the obtuse one they make 180.
-  const Field obtuse = (Field(3, 3) << -1, 0, 0, 1, 0, 0, 0, std::tan(std::acos(-1.0) / 12), 0).finished();
+  const Field obtuse = (Field(3, 3) << -1, 0, 0, 1, 0, 0, 0, std::tan(pi / 12), 0).finished();
   EXPECT_NEAR(mesh_quality((Connectivity(1, 3) << 0, 1, 2).finished(), obtuse).min_angle, 15, 1e-12);
 }
 
@@ -227,3 +228,5 @@ TEST(ProjectNodes, RefusesFarNodesByNumber) {
     }
   }
 }
+
+}  // namespace esfem::test_mesh

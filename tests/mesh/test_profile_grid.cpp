@@ -6,7 +6,7 @@
 #include "solver/mesh/profile_grid.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
 
-namespace esfem {
+namespace esfem::test_profile_grid {
 namespace {
 
 /// The smallest cosine between an element's normal and that of the surface at its first node.
@@ -50,4 +50,4 @@ TEST(ProfileGrid, RefusesLessThanThreeByThreeCells) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_profile_grid

@@ -11,7 +11,8 @@
 #include "solver/error.hpp"
 #include "solver/mesh/read.hpp"
 
-using namespace esfem;
+namespace esfem::test_read {
+
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -366,3 +367,5 @@ TEST(WriteMsh, RefusesHighDegreesAndBadPlaces) {
   EXPECT_THROW(write_msh(curved_mesh(3), file_with("", "msh")), InputError);
   EXPECT_THROW(write_msh(octahedron(), "/nowhere/a.msh"), InputError);
 }
+
+}  // namespace esfem::test_read

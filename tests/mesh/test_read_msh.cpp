@@ -10,7 +10,8 @@
 #include "solver/mesh/mesh_file.hpp"
 #include "solver/mesh/read.hpp"
 
-using namespace esfem;
+namespace esfem::test_read_msh {
+
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -183,3 +184,5 @@ TEST_P(IndependentMesh, IsCurvedAndHasTheEdgeLengthOfItsTable) {
   EXPECT_NEAR(mesh_quality(read.mesh.elements, read.mesh.nodes).h, h, 1e-14);
   EXPECT_EQ(euler_characteristic(read.mesh), 2);
 }
+
+}  // namespace esfem::test_read_msh

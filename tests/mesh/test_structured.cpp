@@ -4,18 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/mesh.hpp"
 #include "tests/mesh/topology.hpp"
 
-using namespace esfem;
+namespace esfem::test_structured {
 
-namespace {
-
-const double pi = std::acos(-1.0);
-
-}  // namespace
+namespace {}  // namespace
 
 TEST(Icosphere, IsAClosedOutwardSphere) {
   for (int s = 0, power = 1; s <= 4; ++s, power *= 4) {
@@ -173,3 +170,5 @@ TEST(StructuredMeshes, RefuseWrongParameters) {
   EXPECT_THROW(torus_edge_length(1, 1.5, 0.1), InputError);
   EXPECT_THROW(radial_edge_length(2, 0.1, 1, 0.2), InputError);
 }
+
+}  // namespace esfem::test_structured

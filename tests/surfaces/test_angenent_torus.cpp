@@ -3,14 +3,13 @@
 
 #include <cmath>
 
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
 
-namespace esfem {
+namespace esfem::test_angenent_torus {
 namespace {
-
-const double pi = std::acos(-1.0);
 
 TEST(PeriodicTable, InterpolatesWithOrderEight) {
   const auto f = [](double s) { return std::exp(std::sin(2 * pi * s / 3)); };
@@ -156,4 +155,4 @@ TEST(AngenentTorus, RefusesScalesThatAreNotPositive) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_angenent_torus

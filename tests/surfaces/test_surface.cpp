@@ -6,6 +6,7 @@
 #include <random>
 
 #include "solver/analysis/table.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/read.hpp"
@@ -13,10 +14,8 @@
 #include "solver/surfaces/named.hpp"
 #include "solver/surfaces/surface.hpp"
 
-namespace esfem {
+namespace esfem::test_surface {
 namespace {
-
-const double pi = std::acos(-1.0);
 
 /// Points of the surface: the closest ones to random points of the ball around it. A few of these lie where
 /// there is no closest point, as the centre line of a tube.
@@ -415,4 +414,4 @@ TEST(NamedSurface, ReadsParametersAndRefusesUnknownOnes) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_surface

@@ -8,7 +8,7 @@
 #include "solver/time/adaptive.hpp"
 #include "tests/time/linear_ode.hpp"
 
-namespace esfem {
+namespace esfem::test_adaptive {
 namespace {
 
 /// The broken variant: the weights of equal steps whatever the steps are.
@@ -223,4 +223,4 @@ TEST(Adaptive, BadGridsAreErrors) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_adaptive

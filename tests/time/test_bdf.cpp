@@ -8,7 +8,7 @@
 #include "solver/error.hpp"
 #include "solver/time/bdf.hpp"
 
-namespace esfem {
+namespace esfem::test_bdf {
 namespace {
 
 // The coefficients as textbooks print them (Hairer, Wanner: Solving ODEs II, chapter V).
@@ -142,4 +142,4 @@ TEST(Bdf, OtherOrdersAreErrors) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_bdf

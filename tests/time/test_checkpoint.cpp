@@ -14,7 +14,7 @@
 #include "solver/write_file.hpp"
 #include "tests/time/linear_ode.hpp"
 
-namespace esfem {
+namespace esfem::test_checkpoint {
 namespace {
 
 namespace fs = std::filesystem;
@@ -329,4 +329,4 @@ TEST_F(CheckpointedRun, RestoresWhatIsAttached) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_checkpoint

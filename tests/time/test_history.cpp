@@ -7,7 +7,7 @@
 #include "solver/time/history.hpp"
 #include "tests/time/linear_ode.hpp"
 
-namespace esfem {
+namespace esfem::test_history {
 namespace {
 
 struct State {
@@ -161,4 +161,4 @@ TEST(History, ARestartedRunEqualsTheUninterruptedOne) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_history

@@ -10,7 +10,7 @@
 #include "solver/time/integrate.hpp"
 #include "tests/time/linear_ode.hpp"
 
-namespace esfem {
+namespace esfem::test_integrate {
 namespace {
 
 double max_error(int q, Start start, int steps, int orders_dropped = 0) {
@@ -189,4 +189,4 @@ TEST(Start, ParsesWhatItPrints) {
 }
 
 }  // namespace
-}  // namespace esfem
+}  // namespace esfem::test_integrate

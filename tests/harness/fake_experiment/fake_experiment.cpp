@@ -88,11 +88,12 @@ int main(int argc, char** argv) {
   experiment.stem = "fake_experiment";
   experiment.paper = "none";
   experiment.help = "Errors h^2 + tau^3 by formula.\nSample run: fake_experiment --list";
-  experiment.add_options = [&](CLI::App& app) {
-    app.add_option("--failing-cell", fake.failing_cell)->group("Fake");
-    app.add_option("--memory-cell", fake.memory_cell)->group("Fake");
-    app.add_option("--writing-cell", fake.writing_cell)->group("Fake");
-    app.add_option("--milliseconds", fake.milliseconds)->group("Fake");
+  experiment.add_options = [&](CommandLine& line) {
+    line.group("Fake");
+    line.text("--failing-cell", fake.failing_cell, "fails");
+    line.text("--memory-cell", fake.memory_cell, "runs out of memory");
+    line.text("--writing-cell", fake.writing_cell, "writes a file");
+    line.integer("--milliseconds", 0, 60000, fake.milliseconds, "that each cell takes");
   };
   experiment.cells = [&](const Options& options) { return cells(options, fake); };
   experiment.parameters = [](const Options& options) {
