@@ -10,9 +10,10 @@ SHELL := bash
 
 # What is put in front of every cell, such as LAUNCH="srun -n1".
 LAUNCH ?=
-BIN := build/bin
+BUILD ?= build
+BIN := $(BUILD)/bin
 cells := results/$(PRESET)/cells
-figures := $(if $(filter paper,$(PRESET)),figures,build/figures-check)
+figures := $(if $(filter paper,$(PRESET)),figures,$(BUILD)/figures-check)
 plotted := $(foreach stem,$(STEMS),$(if $(wildcard plots/$(stem).py),$(stem)))
 
 # Of all experiments together, dearest first: so the last runs to finish are short ones.

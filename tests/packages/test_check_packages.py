@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The check of the package lists on small made-up inputs; `make packages-check` runs it on what was really read."""
+import os
+import tempfile
+import unittest
+import unittest.mock
+
+from check_packages import (RUNS, TESTS, Read, check, dependencies_in, linked, list_of, names_in, ninja_dependencies_in,
+                            packages_read, source_of, steps_to, traced, without)
+
+LISTS = {RUNS: ["g++", "libceres-dev", "libeigen3-dev"], TESTS: ["libgtest-dev", "libgmock-dev"]}
+# What a package brings besides itself.
+BRINGS = {"libceres-dev": {"libeigen3-dev"}, "g++": {"g++-12"}}
+FOUND = {("g++-12", RUNS): Read("/usr/bin/g++-12", "cmake", RUNS, False),
+         ("libceres-dev", RUNS): Read("/usr/include/ceres/ceres.h", "the compiler for fit_orders.cpp.o", RUNS, True),
+         ("libgtest-dev", TESTS): Read("/usr/include/gtest/gtest.h", "the compiler for test_bdf.cpp.o", TESTS, True),
+         ("libgmock-dev", TESTS): Read("/usr/include/gmock/gmock.h", "the compiler for test_grid.cpp.o", TESTS, True)}
+
+
+class FakeApt:
+    def closure(self, packages):
+        return set(packages).union({"libc6"}, *(BRINGS.get(package, ()) for package in packages))
+
+
+class Verdicts(unittest.TestCase):
+    def test_complete_lists_pass(self):
+        self.assertEqual(check(FOUND, LISTS, FakeApt()), [])
+
+    def test_a_package_that_is_missing_is_named_with_a_file_and_its_reader(self):
+        lists = {RUNS: LISTS[RUNS], TESTS: ["libgtest-dev"]}
+        self.assertEqual(check(FOUND, lists, FakeApt()),
+                         ["/usr/include/gmock/gmock.h, read by the compiler for test_grid.cpp.o, belongs to "
+                          "libgmock-dev, which nothing in packages-tests.txt (or packages.txt) brings: list it there"])
+
+    def test_a_test_library_that_the_experiments_read_is_a_fault(self):
+        leak = {("libgtest-dev", RUNS): Read("/usr/include/gtest/gtest.h", "the compiler for grid.cpp.o", RUNS, True)}
+        self.assertIn("nothing in packages.txt brings", check({**FOUND, **leak}, LISTS, FakeApt())[0])
+
+    def test_a_file_of_no_package_is_a_fault(self):
+        stray = {("", RUNS): Read("/usr/local/include/ceres/ceres.h", "the compiler for grid.cpp.o", RUNS, True)}
+        self.assertIn("belongs to no package", check({**FOUND, **stray}, LISTS, FakeApt())[0])
+
+    def test_each_package_is_brought_by_another_or_missed_or_superfluous(self):
+        self.assertEqual(without("libeigen3-dev", FOUND, LISTS, FakeApt())[0], "implied")
+        self.assertEqual(without("libgmock-dev", FOUND, LISTS, FakeApt())[0], "missed")
+        self.assertEqual(without("g++", FOUND, LISTS, FakeApt())[0], "missed")
+        lists = {RUNS: LISTS[RUNS], TESTS: [*LISTS[TESTS], "cowsay"]}
+        kind, sentence = without("cowsay", FOUND, lists, FakeApt())
+        self.assertEqual(kind, "superfluous")
+        self.assertIn("remove it", sentence)
+
+
+class Readers(unittest.TestCase):
+    def test_lists(self):
+        self.assertEqual(names_in("# why\ng++  # build: all\n\nmake\n"), ["g++", "make"])
+
+    def test_dependency_files(self):
+        self.assertEqual(dependencies_in("a.o: b.cpp \\\n /usr/include/c.hpp \\\n /a\\ b/d.hpp\n"),
+                         ["b.cpp", "/usr/include/c.hpp", "/a b/d.hpp"])
+        self.assertEqual(list(ninja_dependencies_in("tests/a.o: #deps 2, deps mtime 1 (VALID)\n    /x.h\n    y.h\n\n")),
+                         [("tests/a.o", "/x.h"), ("tests/a.o", "y.h")])
+        self.assertEqual([list_of(target) for target in ("tests/CMakeFiles/a.o", "bench/a.o", "CMakeFiles/a.o")],
+                         [TESTS, TESTS, RUNS])
+
+    def test_link_commands(self):
+        with tempfile.TemporaryDirectory() as build:
+            os.makedirs(os.path.join(build, "tests/x.dir"))
+            with open(os.path.join(build, "tests/x.dir/link.txt"), "w", encoding="utf-8") as file:
+                file.write("c++ a.o -o ../bin/test_x ../libesfem.a /usr/lib/libgmock.a /usr/lib/libceres.so.3.2 -lm\n")
+            self.assertEqual([(read.path, read.reader, read.list) for read in linked(build)],
+                             [("/usr/lib/libgmock.a", "the linker for test_x", TESTS),
+                              ("/usr/lib/libceres.so.3.2", "the linker for test_x", TESTS)])
+
+    def test_traces(self):
+        lines = ['7 execve("/usr/bin/python3", [""...], 0x1 /* 9 vars */) = 0\n',
+                 '7 openat(AT_FDCWD, "/usr/lib/python3/numpy.py", O_RDONLY|O_CLOEXEC) = 3\n',
+                 '7 openat(AT_FDCWD, "/usr/share/fonts/a.ttf", O_RDONLY) = 3\n', "7 +++ exited with 0 +++\n"]
+        reader = "python3 in `make test-plots`"
+        self.assertEqual([(read.path, read.reader) for read in traced(lines, "test-plots")],
+                         [("/usr/bin/python3", reader), ("/usr/lib/python3/numpy.py", reader)])
+
+    def test_compiled_python_is_its_source(self):
+        self.assertEqual(source_of("/usr/lib/python3/a/__pycache__/b.cpython-311.opt-1.pyc"), "/usr/lib/python3/a/b.py")
+        self.assertEqual(source_of("/usr/lib/python3/a/b.py"), "/usr/lib/python3/a/b.py")
+
+    def test_links_count_but_those_of_alternatives(self):
+        with tempfile.TemporaryDirectory() as folder:
+            folder = os.path.realpath(folder)
+            place = os.path.join(folder, "libx.so.1.0")
+            with open(place, "w", encoding="utf-8"):
+                pass
+            link, alternative = os.path.join(folder, "libx.so"), os.path.join(folder, "cc")
+            os.symlink("libx.so.1.0", link)
+            os.symlink("/etc/alternatives/nothing-of-this-name", alternative)
+            self.assertEqual(steps_to(link), [place, link])
+            self.assertEqual(steps_to(alternative), ["/etc/alternatives/nothing-of-this-name"])
+
+    @unittest.mock.patch("check_packages.NOBODYS", ("/proc/",))
+    def test_what_the_compiler_reads_must_have_a_package_but_in_the_project(self):
+        with tempfile.TemporaryDirectory() as folder:
+            stray = os.path.join(os.path.realpath(folder), "stray.h")
+            with open(stray, "w", encoding="utf-8"):
+                pass
+            notes = []
+            self.assertEqual(packages_read([Read(stray, "c++", RUNS, True)], [os.path.realpath(folder)], notes), {})
+            self.assertEqual(list(packages_read([Read(stray, "c++", RUNS, True)], [], notes)), [("", RUNS)])
+            self.assertEqual(notes, [])
+            self.assertEqual(packages_read([Read(stray, "python3", RUNS, False)], [], notes), {})
+            self.assertIn("not judged", notes[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
