@@ -135,6 +135,7 @@ build-stems: configure
 test:
 	@ctest --test-dir build --output-on-failure -j$(local_jobs) | { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
 	basename -a plots/test_*.py | xargs -P$(local_jobs) -I{} $(PYTHON) -m unittest discover -q -s plots -p {}
+	$(PYTHON) tests/mesh/test_vtu_files.py -q
 
 format:
 	@clang-format -i $(sources)

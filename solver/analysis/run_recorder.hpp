@@ -7,7 +7,7 @@
 
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/flows/discrete_curvature.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/mesh/snapshot_collection.hpp"
 #include "solver/time/checkpoint.hpp"
 
 namespace esfem {
@@ -26,6 +26,7 @@ class RunRecorder {
  public:
   /// The newest surface with its nodal fields.
   struct Surface {
+    int step = 0;
     double t = 0;
     Field x;
     std::vector<PointField> fields;
