@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <regex>
+#include <set>
 
 #include "solver/error.hpp"
 #include "solver/write_file.hpp"
@@ -34,6 +36,12 @@ std::string snapshot_name(const std::string& stem, std::size_t i) {
   return stem + format("_%04zu.vtu", i);
 }
 
+/// Whether snapshot_name gives this name for some i.
+bool is_snapshot_name(const std::string& name, const std::string& stem) {
+  static const std::regex number(R"(_([0-9]{4}|[1-9][0-9]{4,})\.vtu)");
+  return name.compare(0, stem.size(), stem) == 0 && std::regex_match(name.substr(stem.size()), number);
+}
+
 }  // namespace
 
 SnapshotCollection::SnapshotCollection(std::string pvd, int degree, Connectivity elements, RunLabel run)
@@ -61,6 +69,8 @@ std::string SnapshotCollection::add(int n, double t, const Field& x, const std::
   snapshots.emplace_back(t, name);
   write_file(pvd_, pvd_text(snapshots));
   snapshots_ = std::move(snapshots);
+  if (!others_removed_) remove_unlisted();
+  others_removed_ = true;
   return name;
 }
 
@@ -71,6 +81,29 @@ void SnapshotCollection::resume(std::vector<std::pair<double, std::string>> snap
       throw InputError(format("%s: the snapshot at t = %g is missing", (folder / name).c_str(), t));
   if (!snapshots.empty()) write_file(pvd_, pvd_text(snapshots));
   snapshots_ = std::move(snapshots);
+  others_removed_ = false;
+}
+
+/// Files that `add` of an earlier run has written: beside those of this run they would look like its end.
+void SnapshotCollection::remove_unlisted() const {
+  const fs::path path(pvd_), folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::set<std::string> listed;
+  for (const auto& [t, name] : snapshots_) listed.insert(name);
+  std::vector<fs::path> others;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (is_snapshot_name(name, path.stem().string()) && !listed.count(name) &&
+        entry->symlink_status().type() == fs::file_type::regular)
+      others.push_back(entry->path());
+  }
+  if (error) throw InputError(folder.string() + ": this folder cannot be listed: " + error.message());
+  for (const fs::path& other : others) {
+    fs::remove(other, error);
+    if (error)
+      throw InputError(other.string() + ": this snapshot of an earlier run cannot be removed: " +
+                       error.message() + "; remove it, or choose another name for the collection");
+  }
 }
 
 }  // namespace esfem

@@ -10,7 +10,8 @@
 namespace esfem {
 
 /// A ParaView collection (PVD) of the snapshots of one run. "run.pvd" refers to "run_0000.vtu",
-/// "run_0001.vtu", .. beside it; it is complete after each snapshot.
+/// "run_0001.vtu", .. beside it; it is complete after each snapshot. Files of such a name that an earlier run
+/// has left are removed when the first snapshot is written, or the first one after `resume`.
 class SnapshotCollection {
  public:
   /// Folders that are missing are made. Throws InputError when `pvd` does not end in ".pvd".
@@ -25,11 +26,14 @@ class SnapshotCollection {
   void resume(std::vector<std::pair<double, std::string>> snapshots);
 
  private:
+  void remove_unlisted() const;
+
   std::string pvd_;
   int degree_;
   Connectivity elements_;
   RunLabel run_;
   std::vector<std::pair<double, std::string>> snapshots_;
+  bool others_removed_ = false;
 };
 
 }  // namespace esfem

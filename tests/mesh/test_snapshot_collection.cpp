@@ -144,9 +144,51 @@ TEST_F(Snapshots, RefuseOtherNamesAndPlaces) {
   EXPECT_THAT(files(), ElementsAre("file"));
 }
 
+TEST_F(Snapshots, ThoseOfALongerRunGoWithTheFirstOfTheNext) {
+  run(3);
+  const std::vector<std::string> strangers = {"other_0001.vtu",   "run_01.vtu",        "run_0001.vtk",
+                                              "run_00012.vtu",    "run_000a.vtu",      "run_.vtu",
+                                              "run_0001.vtu.bak", "run_0001_0001.vtu", "my_run_0001.vtu"};
+  for (const std::string& name : strangers) std::ofstream(path(name)) << "somebody's";
+  std::ofstream(path("run_0123.vtu")) << "of a run before";
+  std::ofstream(path("run_12345.vtu")) << "of a long run before";
+  fs::create_directory(path("run_0004.vtu"));
+  fs::create_symlink(path("other_0001.vtu"), path("run_0005.vtu"));
+  const std::vector<std::string> before = files();
+  const std::string list = content(path("run.pvd"));
+
+  SnapshotCollection next(path("run.pvd"), 1, mesh.elements);
+  Field wrong = mesh.nodes;
+  wrong(0, 0) = NAN;
+  EXPECT_THROW(next.add(0, 0, wrong, {}), NumericsError);
+  EXPECT_EQ(files(), before) << "a run without a snapshot costs nothing";
+  EXPECT_EQ(content(path("run.pvd")), list);
+
+  next.add(0, 0.5, mesh.nodes, {});
+  std::vector<std::string> expected = strangers;
+  for (const char* name : {"run.pvd", "run_0000.vtu", "run_0004.vtu", "run_0005.vtu"})
+    expected.push_back(name);
+  std::sort(expected.begin(), expected.end());
+  EXPECT_EQ(files(), expected);
+  EXPECT_THAT(snapshots(path("run.pvd")), ElementsAre(testing::Pair(0.5, "run_0000.vtu")));
+  std::ofstream(path("run_0002.vtu")) << "written meanwhile";
+  next.add(1, 1, mesh.nodes, {});
+  EXPECT_TRUE(fs::exists(path("run_0002.vtu"))) << "the folder is cleared once";
+}
+
+TEST_F(Snapshots, AResumedRunKeepsItsOwnAndNoLaterOnes) {
+  run(5);
+  SnapshotCollection resumed(path("run.pvd"), 1, mesh.elements);
+  resumed.resume({{0, "run_0000.vtu"}, {1, "run_0001.vtu"}});
+  EXPECT_EQ(files().size(), 6u) << "nothing is lost before its first snapshot";
+  resumed.add(2, 2, mesh.nodes, {});
+  EXPECT_THAT(files(), ElementsAre("run.pvd", "run_0000.vtu", "run_0001.vtu", "run_0002.vtu"));
+}
+
 TEST_F(Snapshots, InTheWorkingFolder) {
   const fs::path before = fs::current_path();
   fs::current_path(folder);
+  std::ofstream("run_0003.vtu") << "of a run before";
   SnapshotCollection("run.pvd", 1, mesh.elements).add(0, 0, mesh.nodes, {});
   fs::current_path(before);
   EXPECT_THAT(files(), ElementsAre("run.pvd", "run_0000.vtu"));
