@@ -23,7 +23,7 @@ RunRecorder::RunRecorder(const SurfaceSpace& space, SnapshotPlan plan, Energies 
     if (!(plan_.times[i] > plan_.times[i - 1]))
       throw InputError(format("snapshot times: found %g after %g, expected increasing times", plan_.times[i],
                               plan_.times[i - 1]));
-  if (!plan_.pvd.empty()) collection_.emplace(plan_.pvd, space.degree(), space.elements());
+  if (!plan_.pvd.empty()) collection_.emplace(plan_.pvd, space.degree(), space.elements(), plan_.run);
 }
 
 void RunRecorder::record(int n, double t, const Field& x, std::vector<PointField> fields) {
