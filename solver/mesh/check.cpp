@@ -201,7 +201,7 @@ double enclosed_volume(const Mesh& mesh) {
 }
 
 /// Swaps the second and the third corner of every element, and all other nodes with them.
-void turn(Mesh& mesh) {
+void reverse_orientation(Mesh& mesh) {
   const int on_edge = mesh.degree - 1, inner = 3 + 3 * on_edge;
   std::vector<int> from{0, 2, 1};
   for (int edge : {2, 1, 0})
@@ -238,7 +238,7 @@ bool check_closed_surface(Mesh& mesh, const MeshOrigin& origin) {
   check_connected(origin, twin);
   check_curved_edges(mesh, origin, twin);
   const bool inward = enclosed_volume(mesh) < 0;
-  if (inward) turn(mesh);
+  if (inward) reverse_orientation(mesh);
   return inward;
 }
 

@@ -68,15 +68,15 @@ void check_fields(const std::vector<PointField>& fields, int n, const std::strin
 }
 
 template <class Scalar>
-constexpr const char* type_name = nullptr;
+constexpr const char* vtk_type = nullptr;
 template <>
-constexpr const char* type_name<double> = "Float64";
+constexpr const char* vtk_type<double> = "Float64";
 template <>
-constexpr const char* type_name<std::int32_t> = "Int32";
+constexpr const char* vtk_type<std::int32_t> = "Int32";
 template <>
-constexpr const char* type_name<std::int64_t> = "Int64";
+constexpr const char* vtk_type<std::int64_t> = "Int64";
 template <>
-constexpr const char* type_name<std::uint8_t> = "UInt8";
+constexpr const char* vtk_type<std::uint8_t> = "UInt8";
 
 /// The arrays of a file: the XML refers to them, and their bytes follow it as they lie in memory, the number
 /// of bytes (UInt64) in front of each array.
@@ -92,7 +92,7 @@ class AppendedArrays {
     append(&size, sizeof size);
     append(rows.data(), size);
     return format("<DataArray type=\"%s\" Name=\"%s\"%s format=\"appended\" offset=\"%zu\"/>\n",
-                  type_name<Scalar>, name.c_str(), shape.c_str(), offset);
+                  vtk_type<Scalar>, name.c_str(), shape.c_str(), offset);
   }
 
   /// One tuple for each row: what field data, and no other arrays, must say.
