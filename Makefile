@@ -35,7 +35,7 @@ programs := evolve check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
 .PHONY: help figures check bench deps configure build test test-library test-plots format format-check samples \
-        tables-check verdicts independent plots-check report report-check packages-check packages-check-each gallery \
+        sanitize tables-check verdicts independent plots-check report report-check packages-check packages-check-each gallery \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -128,6 +128,13 @@ test-plots:
 	@basename -a plots/test_*.py | xargs -P$(local_jobs) -I{} $(PYTHON) -m unittest discover -q -s plots -p {}
 	$(PYTHON) -m unittest discover -q -s tests/packages
 	$(PYTHON) tests/mesh/test_vtu_files.py -q
+
+# Sanitizers watch the tests of the parts that everything else is made of; those of the flows take too long.
+sanitized := fe mesh assembly linalg time analysis
+sanitize:
+	@export BUILD=build-asan PRESET=asan
+	$(call prepare,build,build tests,$(sanitized:%=test_%))
+	for part in $(sanitized); do build-asan/bin/test_$$part --gtest_brief=1; done
 
 format:
 	@$(call prepare,deps,format)
