@@ -15,7 +15,8 @@ read what comes with both lists. With --without each, every listed package is ta
 it, or the check must miss it.
 
 Rules:
-1. The project, /proc, /sys, /dev, /run, /tmp, /var, /etc, home folders and translations concern no package.
+1. The project, /proc, /sys, /dev, /run, /tmp, /var, /etc, home folders and translations concern no package, nor do
+   links into them.
 2. A symbolic link counts, and so does its target; but links into /etc/alternatives belong to nobody.
 3. __pycache__/x.cpython-311.pyc counts as x.py. Other files in /usr that no package owns are caches, made when a
    package was installed.
@@ -220,9 +221,9 @@ def packages_read(reads, own, notes):
     for read in reads:
         path = os.path.normpath(source_of(read.path))
         if os.path.isabs(path) and os.path.isfile(path) and not path.startswith(ignored) and not path.endswith(".pth"):
-            for place in steps_to(path):
-                if not place.startswith(ignored):
-                    places.setdefault((place, read.list), read._replace(path=place))
+            steps = steps_to(path)
+            for place in steps if not steps[0].startswith(ignored) else ():
+                places.setdefault((place, read.list), read._replace(path=place))
     owners = Owners({place for place, _ in places})
     found, foreign = {}, {}
     for (place, which), read in sorted(places.items()):

@@ -104,6 +104,10 @@ class Readers(unittest.TestCase):
             notes = []
             self.assertEqual(packages_read([Read(stray, "c++", RUNS, True)], [os.path.realpath(folder)], notes), {})
             self.assertEqual(list(packages_read([Read(stray, "c++", RUNS, True)], [], notes)), [("", RUNS)])
+            with tempfile.TemporaryDirectory() as other:
+                link = os.path.join(os.path.realpath(other), "link.h")
+                os.symlink(stray, link)
+                self.assertEqual(packages_read([Read(link, "c++", RUNS, True)], [os.path.realpath(folder)], notes), {})
             self.assertEqual(notes, [])
             self.assertEqual(packages_read([Read(stray, "python3", RUNS, False)], [], notes), {})
             self.assertIn("not judged", notes[0])
