@@ -127,6 +127,7 @@ test-library:
 test-plots:
 	@basename -a plots/test_*.py | xargs -P$(local_jobs) -I{} $(PYTHON) -m unittest discover -q -s plots -p {}
 	$(PYTHON) -m unittest discover -q -s tests/packages
+	$(PYTHON) tests/mesh/test_vtu_files.py -q
 
 format:
 	@$(call prepare,deps,format)

@@ -266,7 +266,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   Reference reference;
   if (compared) reference = interpolation_run(space, mesh, setting, run, grid);
   Series series;
-  RunRecorder recorder(space, snapshot_plan(folder, snapshot_times));
+  RunRecorder recorder(space, snapshot_plan(folder, snapshot_times, "cahn_hilliard", row));
   std::size_t next_snapshot = 0;
   integrate_scheme(space, mesh, setting, run, grid, [&](int n, const State& state) {
     record_energy(space, state, setting.epsilon, series);

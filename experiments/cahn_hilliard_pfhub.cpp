@@ -311,7 +311,8 @@ Row run_cell(const Run& run, Row row, const std::string& folder) {
   const State start = pfhub_state(space, mesh.nodes, pfhub_initial_values(mesh.nodes));
 
   // 3. The time steps.
-  RunRecorder recorder(space, snapshot_plan(folder, {14.15765, 30.26275, 297.45, 1000, 5006}));
+  RunRecorder recorder(space,
+                       snapshot_plan(folder, {14.15765, 30.26275, 297.45, 1000, 5006}, "cahn_hilliard", row));
   Observer observer(space, mesh.nodes, recorder, run);
   std::optional<Checkpoint> checkpoint = checkpoint_in(folder, run.name());
   if (checkpoint) {

@@ -247,7 +247,9 @@ int evolve(const std::string& file, const json& origin) {
   warn(config.mesh_remark);
   const SurfaceSpace space(config.mesh, config.rule);
   const bool fourth_order = config.flow == "willmore" || config.flow == "surface_diffusion";
-  RunRecorder recorder(space, config.snapshots,
+  SnapshotPlan plan = config.snapshots;
+  plan.run = {config.flow, config_json.dump()};
+  RunRecorder recorder(space, plan,
                        fourth_order ? RunRecorder::of_flow_and_surface : RunRecorder::of_the_flow);
   std::optional<Checkpoint> checkpoint = checkpoint_of(config, config_json, recorder);
   if (evolves_curvature(config) && !config.surface)

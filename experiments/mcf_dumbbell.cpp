@@ -243,8 +243,9 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
 
   // 2. The time steps, until the end or the singularity.
   const bool bgn = !has_start(run.method);
+  const std::string flow = bgn ? "bgn" : run.method == "dziuk" ? "dziuk" : "mean_curvature";
   const TimeGrid grid{bgn ? 1 : setting.bdf, row.tau, row.steps, run.start};
-  RunRecorder recorder(space, snapshot_plan(folder, snapshot_times));
+  RunRecorder recorder(space, snapshot_plan(folder, snapshot_times, flow, row));
   if (bgn) {
     row.status = run_flow(BgnFlow(space), space, bgn_state_on(space, mesh.nodes), grid, recorder);
   } else if (run.method == "dziuk") {

@@ -200,7 +200,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   WillmoreFlow flow(space, variant(run), start.theta);
 
   // 3. The time steps.
-  RunRecorder recorder(space, snapshot_plan(folder, {0.01, 0.05, 0.1, 0.2}));
+  RunRecorder recorder(space, snapshot_plan(folder, {0.01, 0.05, 0.1, 0.2}, "surface_diffusion", row));
   const auto observe = [&](int n, const State& state) {
     recorder.record(n, state.t, state.x, point_fields(state));
     record_roundness(state.x, recorder.series());

@@ -74,7 +74,7 @@ Row run_cell(const Setting& setting, Row row, const std::string& folder) {
 
   // 3. The time steps.
   const TimeGrid grid{setting.bdf, row.tau, row.steps, setting.start};
-  RunRecorder recorder(space, snapshot_plan(folder, {2, 3, 4}));
+  RunRecorder recorder(space, snapshot_plan(folder, {2, 3, 4}, "coupled_diffusion", row));
   integrate(flow, grid, initial, {}, [&](int n, const CoupledDiffusionState& state) {
     recorder.record(n, state.t, state.x, point_fields(state));
     Series& series = recorder.series();

@@ -257,7 +257,8 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   WillmoreFlow flow(space, variant(run), start.theta);
 
   // 3. The time steps.
-  RunRecorder recorder(space, snapshot_plan(folder, {0.5, 1, 2, 3}), RunRecorder::of_flow_and_surface);
+  RunRecorder recorder(space, snapshot_plan(folder, {0.5, 1, 2, 3}, "willmore", row),
+                       RunRecorder::of_flow_and_surface);
   Observer observer(recorder, run);
   std::optional<Checkpoint> checkpoint = checkpoint_in(folder, cell_name(run));
   if (checkpoint) {

@@ -57,8 +57,9 @@ willmore, surface_diffusion: nu, H, V, z; cahn_hilliard: u, w) of the last step,
 in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
 (degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
 willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and
-energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x. Where
-the flow has no nu, max_H and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
+energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as
+field data TimeValue, step, flow and configuration (this file; texts are arrays of bytes). Where the flow has no nu, max_H
+and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
 A run that meets a singularity writes what it has computed, says so, and ends with exit code 2.)";
 }
 

@@ -70,8 +70,13 @@ void describe_mesh(const Mesh& mesh, Row& row) {
   row.nodes = static_cast<int>(mesh.nodes.rows());
 }
 
-SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>& times) {
-  return {folder.empty() ? "" : folder + "/surfaces.pvd", times, 0};
+SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>& times,
+                           const std::string& flow, const Row& row) {
+  if (folder.empty()) return {};
+  nlohmann::json configuration = row.more;
+  configuration.update(
+      {{"level", row.level}, {"h", row.h}, {"nodes", row.nodes}, {"tau", row.tau}, {"steps", row.steps}});
+  return {folder + "/surfaces.pvd", times, 0, {flow, configuration.dump()}};
 }
 
 std::string run_to_end(const std::function<void()>& integrate, RunRecorder& recorder) {

@@ -54,8 +54,10 @@ Row planned_row(int level, const HalvedSteps& steps, int k, nlohmann::json label
 /// Fills in h and nodes.
 void describe_mesh(const Mesh& mesh, Row& row);
 
-/// Snapshots at the given times as surfaces.pvd in the folder of a run; none without folder.
-SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>& times);
+/// Snapshots at the given times as surfaces.pvd in the folder of a run; none without folder. They say what
+/// the flow is, by its name in `evolve`, and what the row says beforehand: mesh, step size and labels.
+SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>& times,
+                           const std::string& flow, const Row& row);
 
 /// Integrates a flow whose steps are recorded, and finishes the recorder. Returns the status of the row:
 /// "ok", or why the run ended before its time. A NumericsError of a run without any recorded step passes

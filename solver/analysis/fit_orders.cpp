@@ -12,6 +12,7 @@
 #include <set>
 
 #include "solver/error.hpp"
+#include "solver/linalg/least_squares.hpp"
 
 namespace esfem {
 namespace {
@@ -26,8 +27,8 @@ constexpr double noise_floor = 1e-3;
 constexpr double largest_standard_error = 0.5;
 /// Rows with larger residuals do not follow the model.
 constexpr double largest_residual = 0.5;
-/// Smallest (sigma_min / sigma_max)^2 of a Jacobian that determines the parameters.
-constexpr double smallest_condition = 1e-12;
+/// Smallest pivot (linalg/least_squares.hpp) of a Jacobian that determines the parameters.
+constexpr double smallest_condition = 1e-6;
 /// The logarithm of a constant that is zero.
 constexpr double absent = -1e3;
 
@@ -184,18 +185,10 @@ bool has_full_rank(ceres::Problem& problem, const std::vector<double*>& free) {
   options.apply_loss_function = false;
   ceres::CRSMatrix sparse;
   if (!problem.Evaluate(options, nullptr, nullptr, nullptr, &sparse)) return false;
-  // sigma² are the eigenvalues of J^T J, which is filled up with their mean: neither the least nor the
-  // largest.
-  Eigen::Matrix4d JTJ = Eigen::Matrix4d::Zero();
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
   for (int i = 0; i < sparse.num_rows; ++i)
-    for (int k = sparse.rows[i]; k < sparse.rows[i + 1]; ++k)
-      for (int l = sparse.rows[i]; l < sparse.rows[i + 1]; ++l)
-        JTJ(sparse.cols[k], sparse.cols[l]) += sparse.values[k] * sparse.values[l];
-  const int columns = sparse.num_cols;
-  const double mean = JTJ.trace() / columns;
-  for (int k = columns; k < 4; ++k) JTJ(k, k) = mean;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> solver(JTJ, Eigen::EigenvaluesOnly);
-  return solver.eigenvalues()[0] > smallest_condition * solver.eigenvalues()[3];
+    for (int k = sparse.rows[i]; k < sparse.rows[i + 1]; ++k) jacobian(i, sparse.cols[k]) = sparse.values[k];
+  return smallest_pivot(jacobian) > smallest_condition;
 }
 
 /// Standard errors of the free parameters; false when the data do not determine them.
@@ -287,7 +280,10 @@ std::vector<Model> candidates(int distinct_h, int distinct_tau) {
 }
 
 void set_interval(double order, double standard_error, int degrees_of_freedom, double (&interval)[2]) {
-  const double t = boost::math::quantile(boost::math::students_t(degrees_of_freedom), 0.975);
+  // Boost computes in long double unless told otherwise.
+  using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+  const boost::math::students_t_distribution<double, InDouble> student(degrees_of_freedom);
+  const double t = boost::math::quantile(student, 0.975);
   interval[0] = order - t * standard_error;
   interval[1] = order + t * standard_error;
 }

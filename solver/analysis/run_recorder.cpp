@@ -23,7 +23,7 @@ RunRecorder::RunRecorder(const SurfaceSpace& space, SnapshotPlan plan, Energies 
     if (!(plan_.times[i] > plan_.times[i - 1]))
       throw InputError(format("snapshot times: found %g after %g, expected increasing times", plan_.times[i],
                               plan_.times[i - 1]));
-  if (!plan_.pvd.empty()) collection_.emplace(plan_.pvd, space.degree(), space.elements());
+  if (!plan_.pvd.empty()) collection_.emplace(plan_.pvd, space.degree(), space.elements(), plan_.run);
 }
 
 void RunRecorder::record(int n, double t, const Field& x, std::vector<PointField> fields) {
@@ -39,7 +39,7 @@ void RunRecorder::record(int n, double t, const Field& x, std::vector<PointField
   record_curvature(space_, x, evolves_curvature ? *H : curvature_.H(), step);
 
   for (const auto& [name, values] : step) series_[name].push_back(values.front());
-  newest_ = {t, x, std::move(fields)};
+  newest_ = {n, t, x, std::move(fields)};
   if (writes) write_newest();
 }
 
@@ -56,7 +56,7 @@ void RunRecorder::write_newest() {
   if (!find(fields, "nu")) fields.push_back({"nu", curvature_.nu()});
   if (!find(fields, "H")) fields.push_back({"H", curvature_.H()});
   fields.push_back({"kappa", curvature_.kappa()});
-  snapshots_.push_back({newest_.t, collection_->add(newest_.t, newest_.x, fields)});
+  snapshots_.push_back({newest_.t, collection_->add(newest_.step, newest_.t, newest_.x, fields)});
 }
 
 void RunRecorder::finish() {
@@ -71,10 +71,12 @@ nlohmann::json RunRecorder::progress() const {
     snapshots.push_back({{"t", snapshot.t}, {"file", snapshot.file}});
   for (const PointField& field : newest_.fields)
     fields.push_back({{"name", field.name}, {"values", packed(field.values)}});
-  return {{"series", series_},
-          {"next_time", next_time_},
-          {"snapshots", std::move(snapshots)},
-          {"newest", {{"t", newest_.t}, {"x", packed(newest_.x)}, {"fields", std::move(fields)}}}};
+  return {
+      {"series", series_},
+      {"next_time", next_time_},
+      {"snapshots", std::move(snapshots)},
+      {"newest",
+       {{"step", newest_.step}, {"t", newest_.t}, {"x", packed(newest_.x)}, {"fields", std::move(fields)}}}};
 }
 
 void RunRecorder::resume(const nlohmann::json& progress) {
@@ -87,7 +89,8 @@ void RunRecorder::resume(const nlohmann::json& progress) {
     listed.emplace_back(snapshots.back().t, snapshots.back().file);
   }
   const nlohmann::json& surface = progress.at("newest");
-  Surface newest = {surface.at("t").get<double>(), unpacked(surface.at("x")), {}};
+  Surface newest = {
+      surface.at("step").get<int>(), surface.at("t").get<double>(), unpacked(surface.at("x")), {}};
   for (const nlohmann::json& field : surface.at("fields"))
     newest.fields.push_back({field.at("name").get<std::string>(), unpacked(field.at("values"))});
 

@@ -7,7 +7,7 @@
 
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/flows/discrete_curvature.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/mesh/snapshot_collection.hpp"
 #include "solver/time/checkpoint.hpp"
 
 namespace esfem {
@@ -18,6 +18,7 @@ struct SnapshotPlan {
   std::string pvd;  ///< the collection, "run.pvd"; empty: no snapshots are wanted
   std::vector<double> times;
   int every = 0;
+  RunLabel run = {};  ///< what each snapshot says of the run
 };
 
 /// Keeps what is seen of a run on one mesh: a time series, snapshots, and the newest surface. A step that
@@ -26,6 +27,7 @@ class RunRecorder {
  public:
   /// The newest surface with its nodal fields.
   struct Surface {
+    int step = 0;
     double t = 0;
     Field x;
     std::vector<PointField> fields;

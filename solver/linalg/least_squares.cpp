@@ -7,4 +7,9 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& terms, const Eigen::VectorX
   return terms.colPivHouseholderQr().solve(values);
 }
 
+double smallest_pivot(const Eigen::MatrixXd& terms) {
+  const auto R = terms.colPivHouseholderQr().matrixQR().diagonal().cwiseAbs().eval();
+  return R.minCoeff() / R.maxCoeff();
+}
+
 }  // namespace esfem

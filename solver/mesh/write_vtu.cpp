@@ -1,25 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The format: https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html, in the part of it that
+// VTK 9, ParaView 5 and meshio 5 have in common.
 #include "solver/mesh/write_vtu.hpp"
-
-#include <vtkCellArray.h>
-#include <vtkCellType.h>
-#include <vtkDoubleArray.h>
-#include <vtkIndent.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkSMPTools.h>
-#include <vtkSmartPointer.h>
-#include <vtkTypeInt32Array.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkXMLDataElement.h>
-#include <vtkXMLUnstructuredGridWriter.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
+#include <cstdint>
 #include <set>
-#include <sstream>
 
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
@@ -27,6 +14,9 @@
 
 namespace esfem {
 namespace {
+
+template <class Scalar>
+using Rows = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 void check_finite(const Field& values, const std::string& what, const std::string& file) {
   for (int i = 0; i < values.rows(); ++i)
@@ -50,7 +40,7 @@ void check_elements(int degree, const Connectivity& elements, const Field& x, co
                                 file.c_str(), e + 1, elements(e, i) + 1, n));
 }
 
-/// VTK writes names as they are, whatever they mean to XML.
+/// A name that is the same in XML and in the formulas of ParaView's calculator.
 bool is_plain(const std::string& name) {
   return !name.empty() && std::none_of(name.begin(), name.end(), [](unsigned char c) {
     return c < ' ' || c == '&' || c == '<' || c == '>' || c == '"';
@@ -77,119 +67,118 @@ void check_fields(const std::vector<PointField>& fields, int n, const std::strin
   }
 }
 
-/// VTK's array of the entries of `values`, row by row.
-template <class Array, class Matrix>
-vtkSmartPointer<Array> rows(const Matrix& values) {
-  using Scalar = typename Matrix::Scalar;
-  auto array = vtkSmartPointer<Array>::New();
-  array->SetNumberOfComponents(int(values.cols()));
-  array->SetNumberOfTuples(values.rows());
-  Eigen::Map<Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-      array->GetPointer(0), values.rows(), values.cols()) = values;
-  return array;
+template <class Scalar>
+constexpr const char* type_name = nullptr;
+template <>
+constexpr const char* type_name<double> = "Float64";
+template <>
+constexpr const char* type_name<std::int32_t> = "Int32";
+template <>
+constexpr const char* type_name<std::int64_t> = "Int64";
+template <>
+constexpr const char* type_name<std::uint8_t> = "UInt8";
+
+/// The arrays of a file: the XML refers to them, and their bytes follow it as they lie in memory, the number
+/// of bytes (UInt64) in front of each array.
+class AppendedArrays {
+ public:
+  /// Appends the entries of a matrix row by row and returns the XML element that refers to them.
+  template <class Matrix>
+  std::string add(const std::string& name, const Matrix& values, const std::string& shape = "") {
+    using Scalar = typename Matrix::Scalar;
+    const std::size_t offset = bytes_.size();
+    const Rows<Scalar> rows = values;
+    const std::uint64_t size = rows.size() * sizeof(Scalar);
+    append(&size, sizeof size);
+    append(rows.data(), size);
+    return format("<DataArray type=\"%s\" Name=\"%s\"%s format=\"appended\" offset=\"%zu\"/>\n",
+                  type_name<Scalar>, name.c_str(), shape.c_str(), offset);
+  }
+
+  /// One tuple for each row: what field data, and no other arrays, must say.
+  template <class Matrix>
+  std::string add_field_data(const std::string& name, const Matrix& values) {
+    return add(name, values, format(" NumberOfTuples=\"%td\"", values.rows()));
+  }
+
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  void append(const void* data, std::size_t size) { bytes_.append(static_cast<const char*>(data), size); }
+
+  std::string bytes_;
+};
+
+/// The label as an XML element. Texts are arrays of bytes: meshio refuses a whole file for one of VTK's
+/// string arrays.
+std::string field_data(const SnapshotLabel& label, AppendedArrays& arrays) {
+  std::string xml = "<FieldData>\n";
+  xml += arrays.add_field_data("TimeValue", Rows<double>::Constant(1, 1, label.t));
+  xml += arrays.add_field_data("step", Rows<std::int32_t>::Constant(1, 1, label.step));
+  const std::pair<const char*, const std::string&> texts[] = {{"flow", label.run.flow},
+                                                              {"configuration", label.run.configuration}};
+  for (const auto& [name, text] : texts) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(text.data());
+    if (!text.empty())
+      xml += arrays.add_field_data(name, Eigen::Map<const Rows<std::uint8_t>>(bytes, text.size(), 1));
+  }
+  return xml + "</FieldData>\n";
 }
 
-vtkSmartPointer<vtkUnstructuredGrid> unstructured_grid(int degree, const Connectivity& elements,
-                                                       const Field& x,
-                                                       const std::vector<PointField>& fields) {
-  auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  vtkNew<vtkPoints> points;
-  points->SetData(rows<vtkDoubleArray>(x));
-  grid->SetPoints(points);
-
+std::string cells(int degree, const Connectivity& elements, AppendedArrays& arrays) {
   // VTK's node order is that of fe/lagrange.hpp for all these degrees.
-  const int types[] = {VTK_TRIANGLE, VTK_QUADRATIC_TRIANGLE, VTK_LAGRANGE_TRIANGLE, VTK_LAGRANGE_TRIANGLE};
-  const auto nodes = rows<vtkTypeInt32Array>(elements);
-  nodes->SetNumberOfComponents(1);
-  vtkNew<vtkCellArray> cells;
-  cells->SetData(elements.cols(), nodes);
-  grid->SetCells(types[degree - 1], cells);
-
-  for (const auto& [name, values] : fields) {
-    const auto array = rows<vtkDoubleArray>(values);
-    array->SetName(name.c_str());
-    grid->GetPointData()->AddArray(array);
-  }
-  return grid;
+  constexpr std::uint8_t triangle = 5, quadratic = 22, lagrange = 69,
+                         types[] = {triangle, quadratic, lagrange, lagrange};
+  const Eigen::Index count = elements.rows();
+  Rows<std::int64_t> ends(count, 1);
+  for (Eigen::Index e = 0; e < count; ++e) ends(e) = (e + 1) * elements.cols();
+  std::string xml = "<Cells>\n";
+  xml += arrays.add("connectivity", elements);
+  xml += arrays.add("offsets", ends);
+  xml += arrays.add("types", Rows<std::uint8_t>::Constant(count, 1, types[degree - 1]));
+  return xml + "</Cells>\n";
 }
 
-std::string vtu_text(vtkUnstructuredGrid* grid) {
-  vtkNew<vtkXMLUnstructuredGridWriter> writer;
-  writer->SetInputData(grid);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
-  writer->WriteToOutputStringOn();
-  bool written = false;
-  // VTK computes the ranges of arrays in parallel; its threads would stay and disturb runs on other cores.
-  vtkSMPTools::LocalScope(vtkSMPTools::Config(std::string("Sequential")),
-                          [&] { written = writer->Write() == 1; });
-  return written ? writer->GetOutputString() : "";
+std::string point_data(const std::vector<PointField>& fields, AppendedArrays& arrays) {
+  std::string xml = "<PointData>\n";
+  for (const auto& [name, values] : fields)
+    xml += arrays.add(name, values, values.cols() == 1 ? "" : " NumberOfComponents=\"3\"");
+  return xml + "</PointData>\n";
 }
 
-std::string pvd_text(const std::vector<std::pair<double, std::string>>& snapshots) {
-  vtkNew<vtkXMLDataElement> root, collection;
-  root->SetName("VTKFile");
-  root->SetAttribute("type", "Collection");
-  root->SetAttribute("version", "0.1");
-  root->AddNestedElement(collection);
-  collection->SetName("Collection");
-  for (const auto& [t, file] : snapshots) {
-    vtkNew<vtkXMLDataElement> snapshot;
-    snapshot->SetName("DataSet");
-    snapshot->SetAttribute("timestep", format("%.17g", t).c_str());
-    snapshot->SetAttribute("part", "0");
-    snapshot->SetAttribute("file", file.c_str());
-    collection->AddNestedElement(snapshot);
-  }
-  std::ostringstream text;
-  root->PrintXML(text, vtkIndent());
-  return "<?xml version=\"1.0\"?>\n" + text.str();
+const char* byte_order() {
+  const std::uint16_t one = 1;
+  return *reinterpret_cast<const std::uint8_t*>(&one) == 1 ? "LittleEndian" : "BigEndian";
+}
+
+std::string vtu_text(int degree, const Connectivity& elements, const Field& x,
+                     const std::vector<PointField>& fields, const SnapshotLabel& label) {
+  AppendedArrays arrays;
+  std::string text = format(
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\">\n"
+      "<UnstructuredGrid>\n",
+      byte_order());
+  text += field_data(label, arrays);
+  text += format("<Piece NumberOfPoints=\"%td\" NumberOfCells=\"%td\">\n", x.rows(), elements.rows());
+  text += point_data(fields, arrays);
+  text += "<Points>\n" + arrays.add("Points", x, " NumberOfComponents=\"3\"") + "</Points>\n";
+  text += cells(degree, elements, arrays);
+  text += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+  text += arrays.bytes();
+  return text + "\n</AppendedData>\n</VTKFile>\n";
 }
 
 }  // namespace
 
 void write_vtu(int degree, const Connectivity& elements, const Field& x,
-               const std::vector<PointField>& fields, const std::string& file) {
+               const std::vector<PointField>& fields, const SnapshotLabel& label, const std::string& file) {
   check_elements(degree, elements, x, file);
   check_finite(x, "x", file);
   check_fields(fields, int(x.rows()), file);
-  const std::string text = vtu_text(unstructured_grid(degree, elements, x, fields));
-  if (text.empty()) throw InputError(file + ": cannot be written: VTK's writer failed");
-  write_file(file, text);
-}
-
-SnapshotCollection::SnapshotCollection(std::string pvd, int degree, Connectivity elements)
-    : pvd_(std::move(pvd)), degree_(degree), elements_(std::move(elements)) {
-  const std::filesystem::path path(pvd_);
-  if (path.extension() != ".pvd")
-    throw InputError("'" + pvd_ + "': a name that ends in .pvd expected for a collection of snapshots");
-  std::error_code error;
-  if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
-  if (error)
-    throw InputError(path.parent_path().string() + ": this folder cannot be made: " + error.message());
-}
-
-std::string SnapshotCollection::add(double t, const Field& x, const std::vector<PointField>& fields) {
-  if (!std::isfinite(t))
-    throw NumericsError(format("%s: a snapshot at time %g, a finite time expected", pvd_.c_str(), t));
-  const std::filesystem::path path(pvd_);
-  const std::string name = path.stem().string() + format("_%04zu.vtu", snapshots_.size());
-  write_vtu(degree_, elements_, x, fields, (path.parent_path() / name).string());
-  auto snapshots = snapshots_;
-  snapshots.emplace_back(t, name);
-  write_file(pvd_, pvd_text(snapshots));
-  snapshots_ = std::move(snapshots);
-  return name;
-}
-
-void SnapshotCollection::resume(std::vector<std::pair<double, std::string>> snapshots) {
-  const std::filesystem::path folder = std::filesystem::path(pvd_).parent_path();
-  for (const auto& [t, name] : snapshots)
-    if (!std::filesystem::is_regular_file(folder / name))
-      throw InputError(format("%s: the snapshot at t = %g is missing", (folder / name).c_str(), t));
-  if (!snapshots.empty()) write_file(pvd_, pvd_text(snapshots));
-  snapshots_ = std::move(snapshots);
+  if (!std::isfinite(label.t))
+    throw NumericsError(format("%s: a snapshot at time %g, a finite time expected", file.c_str(), label.t));
+  write_file(file, vtu_text(degree, elements, x, fields, label));
 }
 
 }  // namespace esfem

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "solver/types.hpp"
@@ -15,32 +14,26 @@ struct PointField {
   Field values;
 };
 
+/// What the snapshots of a run say of it, in UTF-8; empty: nothing.
+struct RunLabel {
+  std::string flow;           ///< as `evolve` calls it
+  std::string configuration;  ///< JSON: what the run was asked to do
+};
+
+/// What a snapshot says beside its surface.
+struct SnapshotLabel {
+  int step = 0;
+  double t = 0;
+  RunLabel run = {};
+};
+
 /// Writes a surface of degree 1..4 with nodal fields as a binary VTU file that ParaView opens: triangles (VTK
 /// type 5), quadratic triangles (22), Lagrange triangles (69) for degree 3 and 4. elements: E x (k+1)(k+2)/2,
-/// node order of fe/lagrange.hpp. Whole or not at all. Throws InputError when a field has not one row a node
-/// or the file cannot be written, NumericsError when a value is not finite.
+/// node order of fe/lagrange.hpp. The label is its field data: TimeValue (t, under the name that ParaView
+/// takes for the time) and step; flow and configuration where they are not empty, one number a byte. The same
+/// data give the same bytes. Whole or not at all. Throws InputError when a field has not one row a node or
+/// the file cannot be written, NumericsError when a value is not finite.
 void write_vtu(int degree, const Connectivity& elements, const Field& x,
-               const std::vector<PointField>& fields, const std::string& file);
-
-/// A ParaView collection (PVD) of the snapshots of one run. "run.pvd" refers to "run_0000.vtu",
-/// "run_0001.vtu", .. beside it; it is complete after each snapshot.
-class SnapshotCollection {
- public:
-  /// Folders that are missing are made. Throws InputError when `pvd` does not end in ".pvd".
-  SnapshotCollection(std::string pvd, int degree, Connectivity elements);
-
-  /// Writes the next snapshot and returns its file name without the folder. Errors as write_vtu.
-  std::string add(double t, const Field& x, const std::vector<PointField>& fields);
-
-  /// Goes on after these snapshots (times and names as `add` gave them), whatever is listed now. Throws
-  /// InputError when the file of one is missing.
-  void resume(std::vector<std::pair<double, std::string>> snapshots);
-
- private:
-  std::string pvd_;
-  int degree_;
-  Connectivity elements_;
-  std::vector<std::pair<double, std::string>> snapshots_;
-};
+               const std::vector<PointField>& fields, const SnapshotLabel& label, const std::string& file);
 
 }  // namespace esfem

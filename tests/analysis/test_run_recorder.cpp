@@ -95,6 +95,7 @@ TEST_F(RunRecorderOnASphere, GoesOnFromItsProgress) {
   RunRecorder second(space, {pvd, {}, 2});
   second.resume(nlohmann::json::from_cbor(nlohmann::json::to_cbor(first.progress())));
   EXPECT_EQ(second.series(), first.series());
+  EXPECT_EQ(second.newest().step, 3);
   EXPECT_EQ(second.newest().t, first.newest().t);
   EXPECT_EQ(second.newest().x, first.newest().x);
   ASSERT_EQ(second.newest().fields.size(), 1u);

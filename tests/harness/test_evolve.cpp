@@ -257,6 +257,23 @@ TEST_F(Evolve, WritesSnapshotsAtTheTimesAskedFor) {
   for (const char* text : {"run_0000.vtu", "run_0002.vtu", "0.02"}) EXPECT_THAT(collection, HasSubstr(text));
 }
 
+TEST_F(Evolve, SnapshotsAreThoseOfTheLastRunAndSayWhichItWas) {
+  using std::filesystem::directory_iterator;
+  const std::filesystem::path snapshots = folder / "snapshots";
+  const auto count = [&] { return std::distance(directory_iterator(snapshots), directory_iterator()); };
+  json output = {{"vtu", (snapshots / "run.pvd").string()}, {"every", 1}};
+  ASSERT_EQ(run(config({{"output", output}})), exit_done) << message;
+  const auto longer = count();
+  output.erase("every");
+  const json asked = config({{"output", output}});
+  ASSERT_EQ(run(asked), exit_done) << message;
+  EXPECT_EQ(count(), 3) << "the collection, the start and the end, of " << longer;
+  EXPECT_GT(longer, 3);
+  std::ifstream stream(snapshots / "run_0001.vtu", std::ios::binary);
+  const std::string bytes(std::istreambuf_iterator<char>(stream), {});
+  EXPECT_THAT(bytes, HasSubstr(asked.dump()));
+}
+
 TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
   const std::vector<std::pair<json, std::string>> bad = {
       {{{"flow", "mean"}}, "expected one of bgn, cahn_hilliard, coupled_diffusion, dziuk, mean_curvature"},

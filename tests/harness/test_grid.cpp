@@ -129,7 +129,7 @@ struct Recorded : testing::Test {
   const fs::path folder = fs::path(ESFEM_BINARY_DIR) / "test_grid" / std::to_string(getpid());
   const Mesh mesh = icosphere(1, 1);
   const SurfaceSpace space{mesh};
-  RunRecorder recorder{space, snapshot_plan(folder.string(), {0.25})};
+  RunRecorder recorder{space, snapshot_plan(folder.string(), {0.25}, "none", planned_row(0, {0.4, 0.1}, 0))};
 };
 
 TEST_F(Recorded, RowListsTheSeriesAndTheSnapshots) {
@@ -147,8 +147,18 @@ TEST_F(Recorded, RowListsTheSeriesAndTheSnapshots) {
   EXPECT_TRUE(fs::exists(folder / "surfaces.pvd"));
 }
 
+TEST(Grid, SnapshotsSayWhichRunTheyBelongTo) {
+  Row row = planned_row(3, {1, 0.1}, 2, {{"method", "kll"}});
+  describe_mesh(icosphere(1, 0), row);
+  const RunLabel run = snapshot_plan("folder", {}, "mean_curvature", row).run;
+  EXPECT_EQ(run.flow, "mean_curvature");
+  const nlohmann::json expected = {{"method", "kll"}, {"level", 3},   {"h", row.h},
+                                   {"nodes", 12},     {"tau", 0.025}, {"steps", 40}};
+  EXPECT_EQ(nlohmann::json::parse(run.configuration), expected);
+}
+
 TEST_F(Recorded, WithoutFolderThereAreNoSnapshots) {
-  RunRecorder without(space, snapshot_plan("", {0.25}));
+  RunRecorder without(space, snapshot_plan("", {0.25}, "none", Row()));
   without.record(0, 0, mesh.nodes, {});
   without.finish();
   Row row;
