@@ -29,13 +29,12 @@ Rules:
 import argparse
 import collections
 import concurrent.futures
-import glob
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 
 RUNS, TESTS = LISTS = ("packages.txt", "packages-tests.txt")
 # Parts of `make check`, by the list that must be enough for them.
@@ -90,13 +89,21 @@ def list_of(target):
     return TESTS if re.match(r"(\./)?(tests|bench)/", target) else RUNS
 
 
+def objects_in(commands):
+    """What the compile commands of a build make; other objects in its folder are left from former sources."""
+    outputs = ((command["directory"], re.search(r" -o (\S+)", command["command"])) for command in commands)
+    return {os.path.normpath(os.path.join(directory, output[1])) for directory, output in outputs if output}
+
+
 def compiled(build):
     """What compilers have read."""
-    for path in glob.glob("**/*.d", root_dir=build, recursive=True):
-        if os.path.basename(path) != "link.d" and not path.startswith("packages/"):
-            with open(os.path.join(build, path), encoding="utf-8", errors="surrogateescape") as file:
+    with open(os.path.join(build, "compile_commands.json"), encoding="utf-8", errors="surrogateescape") as file:
+        objects = {os.path.relpath(path, os.path.abspath(build)) for path in objects_in(json.load(file))}
+    for path in sorted(objects):
+        if os.path.exists(os.path.join(build, path + ".d")):
+            with open(os.path.join(build, path + ".d"), encoding="utf-8", errors="surrogateescape") as file:
                 for name in dependencies_in(file.read()):
-                    yield Read(name, f"the compiler for {os.path.basename(path)[:-2]}", list_of(path), True)
+                    yield Read(name, f"the compiler for {os.path.basename(path)}", list_of(path), True)
     if os.path.exists(os.path.join(build, "build.ninja")):
         for target, name in ninja_dependencies_in(run(["ninja", "-C", build, "-t", "deps"]).stdout):
             yield Read(name, f"the compiler for {os.path.basename(target)}", list_of(target), True)
@@ -105,8 +112,11 @@ def compiled(build):
 def linked(build):
     """Libraries that link commands name by their path."""
     commands = {}
-    for path in glob.glob("**/link.txt", root_dir=build, recursive=True):
-        if not path.startswith("packages/"):
+    targets = os.path.join(build, "CMakeFiles/TargetDirectories.txt")
+    with open(targets, encoding="utf-8", errors="surrogateescape") as file:
+        folders = [os.path.relpath(line, os.path.abspath(build)) for line in file.read().splitlines()]
+    for path in (os.path.join(folder, "link.txt") for folder in folders):
+        if os.path.exists(os.path.join(build, path)):
             with open(os.path.join(build, path), encoding="utf-8", errors="surrogateescape") as file:
                 commands[path] = file.read()
     if os.path.exists(os.path.join(build, "build.ninja")):
