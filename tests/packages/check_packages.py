@@ -15,7 +15,8 @@ read what comes with both lists. With --without each, every listed package is ta
 it, or the check must miss it.
 
 Rules:
-1. The project, /proc, /sys, /dev, /run, /tmp, /var, /etc, home folders and translations concern no package.
+1. The project, /proc, /sys, /dev, /run, /tmp, /var, /etc, home folders and translations concern no package, nor do
+   links into them.
 2. A symbolic link counts, and so does its target; but links into /etc/alternatives belong to nobody.
 3. __pycache__/x.cpython-311.pyc counts as x.py. Other files in /usr that no package owns are caches, made when a
    package was installed.
@@ -28,13 +29,12 @@ Rules:
 import argparse
 import collections
 import concurrent.futures
-import glob
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 
 RUNS, TESTS = LISTS = ("packages.txt", "packages-tests.txt")
 # Parts of `make check`, by the list that must be enough for them.
@@ -89,13 +89,21 @@ def list_of(target):
     return TESTS if re.match(r"(\./)?(tests|bench)/", target) else RUNS
 
 
+def objects_in(commands):
+    """What the compile commands of a build make; other objects in its folder are left from former sources."""
+    outputs = ((command["directory"], re.search(r" -o (\S+)", command["command"])) for command in commands)
+    return {os.path.normpath(os.path.join(directory, output[1])) for directory, output in outputs if output}
+
+
 def compiled(build):
     """What compilers have read."""
-    for path in glob.glob("**/*.d", root_dir=build, recursive=True):
-        if os.path.basename(path) != "link.d" and not path.startswith("packages/"):
-            with open(os.path.join(build, path), encoding="utf-8", errors="surrogateescape") as file:
+    with open(os.path.join(build, "compile_commands.json"), encoding="utf-8", errors="surrogateescape") as file:
+        objects = {os.path.relpath(path, os.path.abspath(build)) for path in objects_in(json.load(file))}
+    for path in sorted(objects):
+        if os.path.exists(os.path.join(build, path + ".d")):
+            with open(os.path.join(build, path + ".d"), encoding="utf-8", errors="surrogateescape") as file:
                 for name in dependencies_in(file.read()):
-                    yield Read(name, f"the compiler for {os.path.basename(path)[:-2]}", list_of(path), True)
+                    yield Read(name, f"the compiler for {os.path.basename(path)}", list_of(path), True)
     if os.path.exists(os.path.join(build, "build.ninja")):
         for target, name in ninja_dependencies_in(run(["ninja", "-C", build, "-t", "deps"]).stdout):
             yield Read(name, f"the compiler for {os.path.basename(target)}", list_of(target), True)
@@ -104,8 +112,11 @@ def compiled(build):
 def linked(build):
     """Libraries that link commands name by their path."""
     commands = {}
-    for path in glob.glob("**/link.txt", root_dir=build, recursive=True):
-        if not path.startswith("packages/"):
+    targets = os.path.join(build, "CMakeFiles/TargetDirectories.txt")
+    with open(targets, encoding="utf-8", errors="surrogateescape") as file:
+        folders = [os.path.relpath(line, os.path.abspath(build)) for line in file.read().splitlines()]
+    for path in (os.path.join(folder, "link.txt") for folder in folders):
+        if os.path.exists(os.path.join(build, path)):
             with open(os.path.join(build, path), encoding="utf-8", errors="surrogateescape") as file:
                 commands[path] = file.read()
     if os.path.exists(os.path.join(build, "build.ninja")):
@@ -220,9 +231,9 @@ def packages_read(reads, own, notes):
     for read in reads:
         path = os.path.normpath(source_of(read.path))
         if os.path.isabs(path) and os.path.isfile(path) and not path.startswith(ignored) and not path.endswith(".pth"):
-            for place in steps_to(path):
-                if not place.startswith(ignored):
-                    places.setdefault((place, read.list), read._replace(path=place))
+            steps = steps_to(path)
+            for place in steps if not steps[0].startswith(ignored) else ():
+                places.setdefault((place, read.list), read._replace(path=place))
     owners = Owners({place for place, _ in places})
     found, foreign = {}, {}
     for (place, which), read in sorted(places.items()):

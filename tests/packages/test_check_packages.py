@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The check of the package lists on small made-up inputs; `make packages-check` runs it on what was really read."""
+import json
 import os
 import tempfile
 import unittest
 import unittest.mock
 
-from check_packages import (RUNS, TESTS, Read, check, dependencies_in, linked, list_of, names_in, ninja_dependencies_in,
-                            packages_read, source_of, steps_to, traced, without)
+from check_packages import (RUNS, TESTS, Read, check, compiled, dependencies_in, linked, list_of, names_in,
+                            ninja_dependencies_in, packages_read, source_of, steps_to, traced, without)
 
 LISTS = {RUNS: ["g++", "libceres-dev", "libeigen3-dev"], TESTS: ["libgtest-dev", "libgmock-dev"]}
 # What a package brings besides itself.
@@ -62,11 +63,26 @@ class Readers(unittest.TestCase):
         self.assertEqual([list_of(target) for target in ("tests/CMakeFiles/a.o", "bench/a.o", "CMakeFiles/a.o")],
                          [TESTS, TESTS, RUNS])
 
+    def test_objects_of_former_sources_do_not_count(self):
+        with tempfile.TemporaryDirectory() as build:
+            os.makedirs(os.path.join(build, "tests"))
+            for name in ("new.cpp.o", "left_over.cpp.o"):
+                with open(os.path.join(build, f"tests/{name}.d"), "w", encoding="utf-8") as file:
+                    file.write(f"{name}: \\\n /usr/include/of_{name}.h\n")
+            with open(os.path.join(build, "compile_commands.json"), "w", encoding="utf-8") as file:
+                json.dump([{"directory": f"{build}/tests", "command": "c++ -o new.cpp.o -c /new.cpp"}], file)
+            self.assertEqual(list(compiled(build)),
+                             [Read("/usr/include/of_new.cpp.o.h", "the compiler for new.cpp.o", TESTS, True)])
+
     def test_link_commands(self):
         with tempfile.TemporaryDirectory() as build:
-            os.makedirs(os.path.join(build, "tests/x.dir"))
-            with open(os.path.join(build, "tests/x.dir/link.txt"), "w", encoding="utf-8") as file:
-                file.write("c++ a.o -o ../bin/test_x ../libesfem.a /usr/lib/libgmock.a /usr/lib/libceres.so.3.2 -lm\n")
+            for target, library in (("x", "/usr/lib/libceres.so.3.2"), ("left_over", "/usr/lib/libold.so")):
+                os.makedirs(os.path.join(build, f"tests/{target}.dir"))
+                with open(os.path.join(build, f"tests/{target}.dir/link.txt"), "w", encoding="utf-8") as file:
+                    file.write(f"c++ a.o -o ../bin/test_{target} ../libesfem.a /usr/lib/libgmock.a {library} -lm\n")
+            os.makedirs(os.path.join(build, "CMakeFiles"))
+            with open(os.path.join(build, "CMakeFiles/TargetDirectories.txt"), "w", encoding="utf-8") as file:
+                file.write(f"{build}/tests/x.dir\n{build}/tests/no_program.dir\n")
             self.assertEqual([(read.path, read.reader, read.list) for read in linked(build)],
                              [("/usr/lib/libgmock.a", "the linker for test_x", TESTS),
                               ("/usr/lib/libceres.so.3.2", "the linker for test_x", TESTS)])
@@ -104,6 +120,10 @@ class Readers(unittest.TestCase):
             notes = []
             self.assertEqual(packages_read([Read(stray, "c++", RUNS, True)], [os.path.realpath(folder)], notes), {})
             self.assertEqual(list(packages_read([Read(stray, "c++", RUNS, True)], [], notes)), [("", RUNS)])
+            with tempfile.TemporaryDirectory() as other:
+                link = os.path.join(os.path.realpath(other), "link.h")
+                os.symlink(stray, link)
+                self.assertEqual(packages_read([Read(link, "c++", RUNS, True)], [os.path.realpath(folder)], notes), {})
             self.assertEqual(notes, [])
             self.assertEqual(packages_read([Read(stray, "python3", RUNS, False)], [], notes), {})
             self.assertIn("not judged", notes[0])
