@@ -78,7 +78,8 @@ Surface named_surface(const json& description) {
   const std::string name = description.is_object() ? description.value("name", json()).dump() : "";
   for (const Entry& entry : entries()) {
     if (name != json(entry.name).dump()) continue;
-    for (const auto& [key, value] : description.items()) {
+    for (const auto& item : description.items()) {
+      const std::string& key = item.key();
       const bool known = key == "name" || std::any_of(entry.defaults.begin(), entry.defaults.end(),
                                                       [&](const auto& p) { return p.first == key; });
       if (known) continue;
