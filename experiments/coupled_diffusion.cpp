@@ -41,7 +41,7 @@ namespace {
 using namespace esfem;
 using State = CoupledDiffusionState;
 
-const double largest_h = 0.38;
+const double largest_h = 0.381;
 const HalvedSteps time_steps{1, 0.1};
 const int reference_k = 7;  ///< step size of the solution that the orders of BDF 1 to 5 are measured against
 
