@@ -47,6 +47,7 @@ help:
 	@echo "make STEM          one experiment as published, with its figures; STEM is one of"
 	@echo "                   $(or $(stems),(none yet))"
 	@echo "make evolve        only the program for your own surface, mesh and flow -> $(BIN)/evolve"
+	@echo "make sanitize      the tests of all but the flows under AddressSanitizer and UBSan, in build-asan/"
 	@echo "make bench         ms per step and phase at growing sizes"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
 	@echo "make gallery       small pictures in docs/ and the headline table of README.md, from the same"
@@ -121,9 +122,12 @@ ifeq ($(MAKELEVEL),0)
 test-library test-plots test-vtu samples tables-check verdicts independent plots-check report-check packages-check: build
 endif
 
+# run_tests(folder, options): tests that pass are not listed.
+run_tests = ctest --test-dir $(1) --output-on-failure -j$(local_jobs) $(2) | \
+  { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
 test: test-library test-plots test-vtu
 test-library:
-	@ctest --test-dir $(BUILD) --output-on-failure -j$(local_jobs) | { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
+	@$(call run_tests,$(BUILD))
 test-plots:
 	@basename -a plots/test_*.py | xargs -P$(local_jobs) -I{} $(PYTHON) -m unittest discover -q -s plots -p {}
 	$(PYTHON) -m unittest discover -q -s tests/packages
@@ -132,11 +136,10 @@ test-vtu:
 	@$(PYTHON) tests/mesh/test_vtu_files.py -q
 
 # Sanitizers watch the tests of the parts that everything else is made of; those of the flows take too long.
-sanitized := fe mesh assembly linalg time analysis
 sanitize:
 	@export BUILD=build-asan PRESET=asan
-	$(call prepare,build,build tests,$(sanitized:%=test_%))
-	for part in $(sanitized); do build-asan/bin/test_$$part --gtest_brief=1; done
+	$(call prepare,build,build tests,sanitized)
+	$(call run_tests,$$BUILD,-L '^(fe|mesh|assembly|linalg|time|analysis)$$')
 
 format:
 	@$(call prepare,deps,format)
