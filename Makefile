@@ -76,7 +76,7 @@ deps configure build:
 figures: prepare-figures
 	+@start=$$SECONDS
 	$(call run,paper,$(stems),all)
-	echo "== everything as published: $$((SECONDS - start)) s, compiling apart. Seconds on one core, and the dearest runs:"
+	echo "== everything as published: $$((SECONDS - start)) s, excluding compilation. Seconds on one core, and the most expensive runs:"
 	grep -Hm1 '"seconds":' $(stems:%=results/paper/cells/%/*.json) | tr -d ',' | awk -F'[/: ]+' '
 	  { stem = $$4; sub(".json", "", $$5); of[stem] += $$NF; all += $$NF; n += 1; run[stem " " $$5] = $$NF }
 	  END { for (s in of) printf "%8.0f  %s\n", of[s], s | "sort -gr"; close("sort -gr")

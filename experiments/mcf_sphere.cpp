@@ -92,7 +92,7 @@ Setting resolve(const Options& options, const OwnOptions& own) {
   setting.rule = quadrature_or_default(own.quadrature, setting.degree);
   setting.levels = mesh_levels(options, paper ? range(0, 4) : range(0, 2));
   setting.dziuk_levels = setting.levels;
-  // The published run leaves out the dearest mesh: it shows nothing that the others do not.
+  // The published run leaves out the most expensive mesh: it shows nothing that the others do not.
   if (paper && !options.levels && options.meshes.empty()) setting.dziuk_levels.pop_back();
   setting.steps = options.steps.value_or(paper ? range(0, 7) : range(2, 6));
   setting.start = options.start.value_or(Start{});

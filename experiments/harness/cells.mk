@@ -16,7 +16,7 @@ cells := results/$(PRESET)/cells
 figures := $(if $(filter paper,$(PRESET)),figures,$(BUILD)/figures-check)
 plotted := $(foreach stem,$(STEMS),$(if $(wildcard plots/$(stem).py),$(stem)))
 
-# Of all experiments together, dearest first: so the last runs to finish are short ones.
+# Of all experiments together, most expensive first: so the last runs to finish are short ones.
 all_cells := $(shell cd $(cells) && for s in $(STEMS); do sed "s|^\([^ ]*\)|$$s/\1.json|" $$s/.list; done | \
   sort -k2,2gr | cut -d' ' -f1)
 all_cells := $(addprefix $(cells)/,$(all_cells))
