@@ -25,6 +25,7 @@ Rules:
 5. The package of another compiler or build tool than g++ and make (CXX, CMAKE_GENERATOR) counts as listed.
 6. Who lists the machine's fonts opens all of them: only those that fontconfig chooses for report.css count.
 7. Every start of Python reads the .pth files that are there, and the hook that setuptools' one names (_distutils_hack).
+8. Dynamic loaders do not count: libc6 is on every system, and ldd asks the loaders of other architectures, too.
 """
 import argparse
 import collections
@@ -44,6 +45,7 @@ PARTS = {"samples": RUNS, "tables-check": RUNS, "verdicts": RUNS, "independent":
 NOBODYS = ("/proc/", "/sys/", "/dev/", "/run/", "/tmp/", "/var/", "/etc/", "/home/", "/usr/share/locale/",
            "/usr/lib/locale/", "/usr/lib/python3/dist-packages/_distutils_hack/")
 FONTS = ("/usr/share/fonts/", "/usr/local/share/fonts/", "/usr/share/texmf/fonts/")
+LOADER = re.compile(r"/ld(-[\w-]+)?\.so\.\d+$")
 # Variables of CMake's cache, and what is there unless the user chooses something else.
 DEFAULT_TOOLS = {"CMAKE_CXX_COMPILER": "g++", "CMAKE_MAKE_PROGRAM": "make"}
 Read = collections.namedtuple("Read", "path reader list built")  # built: by the compiler or the linker
@@ -142,7 +144,7 @@ def traced(lines, part):
         process, call, path = found.groups()
         if call == "execve":
             reader[process] = os.path.basename(path)
-        if path not in seen and not path.startswith(FONTS):
+        if path not in seen and not path.startswith(FONTS) and not LOADER.search(path):
             seen.add(path)
             yield Read(path, f"{reader.get(process, 'a program')} in `make {part}`", PARTS[part], False)
 

@@ -90,7 +90,9 @@ class Readers(unittest.TestCase):
     def test_traces(self):
         lines = ['7 execve("/usr/bin/python3", [""...], 0x1 /* 9 vars */) = 0\n',
                  '7 openat(AT_FDCWD, "/usr/lib/python3/numpy.py", O_RDONLY|O_CLOEXEC) = 3\n',
-                 '7 openat(AT_FDCWD, "/usr/share/fonts/a.ttf", O_RDONLY) = 3\n', "7 +++ exited with 0 +++\n"]
+                 '7 openat(AT_FDCWD, "/usr/share/fonts/a.ttf", O_RDONLY) = 3\n',
+                 '7 execve("/lib/ld-linux.so.2", [""...], 0x1 /* 9 vars */) = 0\n',
+                 '7 execve("/lib64/ld-linux-x86-64.so.2", [""...], 0x1 /* 9 vars */) = 0\n', "7 +++ exited with 0 +++\n"]
         reader = "python3 in `make test-plots`"
         self.assertEqual([(read.path, read.reader) for read in traced(lines, "test-plots")],
                          [("/usr/bin/python3", reader), ("/usr/lib/python3/numpy.py", reader)])
