@@ -26,6 +26,7 @@ Rules:
 6. Who lists the machine's fonts opens all of them: only those that fontconfig chooses for report.css count.
 7. Every start of Python reads the .pth files that are there, and the hook that setuptools' one names (_distutils_hack).
 8. Dynamic loaders do not count: libc6 is on every system, and ldd asks the loaders of other architectures, too.
+9. What a compiler opens counts by its dependency file alone: __has_include opens headers that need not be there.
 """
 import argparse
 import collections
@@ -46,6 +47,7 @@ NOBODYS = ("/proc/", "/sys/", "/dev/", "/run/", "/tmp/", "/var/", "/etc/", "/hom
            "/usr/lib/locale/", "/usr/lib/python3/dist-packages/_distutils_hack/")
 FONTS = ("/usr/share/fonts/", "/usr/local/share/fonts/", "/usr/share/texmf/fonts/")
 LOADER = re.compile(r"/ld(-[\w-]+)?\.so\.\d+$")
+COMPILER = re.compile(r"cc1plus$|clang")
 # Variables of CMake's cache, and what is there unless the user chooses something else.
 DEFAULT_TOOLS = {"CMAKE_CXX_COMPILER": "g++", "CMAKE_MAKE_PROGRAM": "make"}
 Read = collections.namedtuple("Read", "path reader list built")  # built: by the compiler or the linker
@@ -144,6 +146,8 @@ def traced(lines, part):
         process, call, path = found.groups()
         if call == "execve":
             reader[process] = os.path.basename(path)
+        elif COMPILER.match(reader.get(process, "")):
+            continue
         if path not in seen and not path.startswith(FONTS) and not LOADER.search(path):
             seen.add(path)
             yield Read(path, f"{reader.get(process, 'a program')} in `make {part}`", PARTS[part], False)

@@ -92,10 +92,13 @@ class Readers(unittest.TestCase):
                  '7 openat(AT_FDCWD, "/usr/lib/python3/numpy.py", O_RDONLY|O_CLOEXEC) = 3\n',
                  '7 openat(AT_FDCWD, "/usr/share/fonts/a.ttf", O_RDONLY) = 3\n',
                  '7 execve("/lib/ld-linux.so.2", [""...], 0x1 /* 9 vars */) = 0\n',
-                 '7 execve("/lib64/ld-linux-x86-64.so.2", [""...], 0x1 /* 9 vars */) = 0\n', "7 +++ exited with 0 +++\n"]
+                 '7 execve("/lib64/ld-linux-x86-64.so.2", [""...], 0x1 /* 9 vars */) = 0\n', "7 +++ exited with 0 +++\n",
+                 '8 execve("/usr/lib/gcc/cc1plus", [""...], 0x1 /* 9 vars */) = 0\n',
+                 '8 openat(AT_FDCWD, "/usr/include/optional.h", O_RDONLY|O_NOCTTY) = 4\n']
         reader = "python3 in `make test-plots`"
         self.assertEqual([(read.path, read.reader) for read in traced(lines, "test-plots")],
-                         [("/usr/bin/python3", reader), ("/usr/lib/python3/numpy.py", reader)])
+                         [("/usr/bin/python3", reader), ("/usr/lib/python3/numpy.py", reader),
+                          ("/usr/lib/gcc/cc1plus", "cc1plus in `make test-plots`")])
 
     def test_compiled_python_is_its_source(self):
         self.assertEqual(source_of("/usr/lib/python3/a/__pycache__/b.cpython-311.opt-1.pyc"), "/usr/lib/python3/a/b.py")
