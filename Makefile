@@ -129,7 +129,7 @@ test: test-library test-plots test-vtu
 test-library:
 	@$(call run_tests,$(BUILD))
 test-plots:
-	@basename -a plots/test_*.py | xargs -P$(local_jobs) -I{} $(PYTHON) -m unittest discover -q -s plots -p {}
+	@(cd plots && basename -s .py -a test_*.py | xargs -n6 -P$(local_jobs) $(PYTHON) -m unittest -q)
 	$(PYTHON) -m unittest discover -q -s tests/packages
 # VTK and ParaView read the snapshots where they are installed; so what this reads is in no list of packages.
 test-vtu:
