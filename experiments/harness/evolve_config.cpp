@@ -3,11 +3,10 @@
 
 #include <map>
 
+#include "experiments/harness/evolve_mesh.hpp"
 #include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
-#include "solver/mesh/generate.hpp"
-#include "solver/mesh/read.hpp"
 #include "solver/surfaces/named.hpp"
 
 namespace esfem {
@@ -18,61 +17,6 @@ using nlohmann::json;
 
 const std::set<std::string> known_flows = {
     "mean_curvature", "dziuk", "bgn", "coupled_diffusion", "willmore", "surface_diffusion", "cahn_hilliard"};
-
-std::string listed(const std::set<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
-int integer_within(const JsonReader& reader, const std::string& key, int otherwise, int low, int high) {
-  const int value = reader.has(key) ? reader.integer(key) : otherwise;
-  if (value < low || value > high) {
-    throw InputError(format("%s: found %s = %d; expected %d to %d", reader.where().c_str(), key.c_str(),
-                            value, low, high));
-  }
-  return value;
-}
-
-/// The one key of an object that must have exactly one of `known`.
-std::string only_key(const JsonReader& reader, const json& object, const std::set<std::string>& known) {
-  reader.accept_only(known);
-  if (object.size() == 1) return object.begin().key();
-  throw InputError(reader.where() + ": found " + object.dump() + "; expected exactly one of the keys " +
-                   listed(known));
-}
-
-/// A subdivided icosahedron, as it is on a sphere, stretched for an ellipsoid.
-Mesh subdivided(const Surface& surface, int subdivisions, const std::string& where) {
-  if (surface.name == "sphere") return icosphere(surface.parameters.at("radius"), subdivisions);
-  if (surface.name == "ellipsoid") {
-    Mesh mesh = icosphere(1, subdivisions);
-    const auto& axes = surface.parameters;
-    mesh.nodes *= Vec3(axes.at("a"), axes.at("b"), axes.at("c")).asDiagonal();
-    return mesh;
-  }
-  throw InputError(where + ": subdivisions make a sphere or an ellipsoid, not a " + surface.name +
-                   "; expected edge_length or file");
-}
-
-void make_mesh(const json& description, const std::string& where, int degree, EvolveConfig& config) {
-  const JsonReader reader(description, where);
-  const std::string key = only_key(reader, description, {"file", "edge_length", "subdivisions"});
-  if (key != "file" && !config.surface) {
-    throw InputError(where + ": " + key + " needs a \"surface\"; expected one, or a mesh with the key file");
-  }
-  if (key == "file") {
-    ReadMesh found = read_mesh(reader.text("file"));
-    config.mesh = std::move(found.mesh);
-    config.mesh_remark = found.remark;
-  } else if (key == "edge_length") {
-    config.mesh = generate_mesh(*config.surface, reader.number("edge_length"));
-  } else {
-    config.mesh = subdivided(*config.surface, integer_within(reader, "subdivisions", 0, 0, 8), where);
-  }
-  config.mesh = lagrange_mesh(config.mesh, degree);
-  if (config.surface) project_nodes(config.mesh, *config.surface);
-}
 
 double positive_or(const JsonReader& reader, const std::string& key, double otherwise) {
   const double value = reader.number_or(key, otherwise);
@@ -91,7 +35,7 @@ AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
   reader.accept_only({"end_time", "tolerance", "first_step", "largest_step"});
   AdaptiveGrid grid;
   const int highest = flow == "bgn" ? 1 : 2;
-  grid.order = integer_within(whole, "bdf", highest, 1, highest);
+  grid.order = whole.integer_within("bdf", highest, 1, highest);
   grid.end_time = reader.number("end_time");
   grid.tolerance = positive_or(reader, "tolerance", grid.tolerance);
   grid.first_step = positive_or(reader, "first_step", grid.first_step);
@@ -103,9 +47,9 @@ AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
 TimeGrid time_grid(const JsonReader& reader, const std::string& flow) {
   TimeGrid grid;
   const bool one_step = flow == "bgn";
-  grid.order = integer_within(reader, "bdf", one_step ? 1 : 3, 1, one_step ? 1 : max_bdf_order);
+  grid.order = reader.integer_within("bdf", one_step ? 1 : 3, 1, one_step ? 1 : max_bdf_order);
   grid.tau = reader.number("tau");
-  grid.steps = integer_within(reader, "steps", 0, 0, 100000000);
+  grid.steps = reader.integer_within("steps", 0, 0, 100000000);
   if (!(grid.tau > 0)) {
     throw InputError(
         format("%s: found tau = %g; expected a positive step size", reader.where().c_str(), grid.tau));
@@ -116,7 +60,7 @@ TimeGrid time_grid(const JsonReader& reader, const std::string& flow) {
 
 Quadrature quadrature(const json& description, const std::string& where) {
   const JsonReader reader(description, where);
-  const std::string key = only_key(reader, description, {"conical", "degree"});
+  const std::string key = reader.only_key({"conical", "degree"});
   return key == "conical" ? conical_quadrature(reader.integer("conical"))
                           : symmetric_quadrature(reader.integer("degree"));
 }
@@ -209,7 +153,7 @@ void read_cahn_hilliard(const JsonReader& reader, const std::string& source, Evo
     run.epsilon = positive_or(parameters, "epsilon", run.epsilon);
     run.mean = parameters.number_or("mean", run.mean);
     run.disturbance = parameters.number_or("disturbance", run.disturbance);
-    run.seed = integer_within(parameters, "seed", run.seed, 0, 1000000);
+    run.seed = parameters.integer_within("seed", run.seed, 0, 1000000);
   }
   if (!reader.has("variant")) return;
   if (!on_ellipsoid)
@@ -262,7 +206,7 @@ void read_tumour_growth(const JsonReader& parameters, EvolveConfig::Coupled& cou
   kinetics.gamma = parameters.number_or("gamma", kinetics.gamma);
   kinetics.delta = parameters.number_or("delta", kinetics.delta);
   coupled.disturbance = parameters.number_or("disturbance", coupled.disturbance);
-  coupled.seed = integer_within(parameters, "seed", coupled.seed, 0, 1000000);
+  coupled.seed = parameters.integer_within("seed", coupled.seed, 0, 1000000);
 }
 
 EvolveConfig::Coupled coupled_problem(const JsonReader& reader, const EvolveConfig& config) {
@@ -288,7 +232,7 @@ EvolveConfig::Coupled coupled_problem(const JsonReader& reader, const EvolveConf
 SnapshotPlan snapshot_plan(const JsonReader& output) {
   SnapshotPlan plan;
   if (output.has("vtu")) plan.pvd = output.text("vtu");
-  plan.every = integer_within(output, "every", 0, 0, 100000000);
+  plan.every = output.integer_within("every", 0, 0, 100000000);
   if (output.has("times")) {
     for (const json& time : output.array("times")) {
       if (!time.is_number()) output.wrong_type("times", "an array of numbers", time);
@@ -314,7 +258,7 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   }
   reader.accept_only({"flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start", "quadrature",
                       "variant", "output", "problem", "parameters", "adaptive"});
-  const int degree = integer_within(reader, "degree", 2, 1, max_degree);
+  const int degree = reader.integer_within("degree", 2, 1, max_degree);
   config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
                 : config.flow == "bgn" && degree == 1 ? vertex_quadrature()
                                                       : default_quadrature(degree);
@@ -351,7 +295,8 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
     else if (reader.has("variant"))
       throw InputError(source + ": flow " + config.flow + " has no variants; expected no key variant");
   }
-  make_mesh(reader.object("mesh"), source + ": mesh", degree, config);
+  const JsonReader mesh(reader.object("mesh"), source + ": mesh");
+  std::tie(config.mesh, config.mesh_remark) = evolve_mesh(mesh, degree, config.surface);
   return config;
 }
 

@@ -9,6 +9,12 @@ namespace esfem {
 
 using Json = nlohmann::json;
 
+std::string listed(const std::set<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
 JsonReader::JsonReader(const Json& object, std::string where) : json_(object), where_(std::move(where)) {
   if (!json_.is_object()) throw InputError(where_ + ": expected a JSON object, found " + json_.type_name());
 }
@@ -40,6 +46,14 @@ int JsonReader::integer(const std::string& key) const {
   return value;
 }
 
+int JsonReader::integer_within(const std::string& key, int otherwise, int low, int high) const {
+  const int value = has(key) ? integer(key) : otherwise;
+  if (value < low || value > high)
+    throw InputError(
+        format("%s: found %s = %d; expected %d to %d", where_.c_str(), key.c_str(), value, low, high));
+  return value;
+}
+
 const Json& JsonReader::object(const std::string& key) const {
   const Json& value = at(key);
   if (!value.is_object()) wrong_type(key, "an object", value);
@@ -53,11 +67,16 @@ const Json& JsonReader::array(const std::string& key) const {
 }
 
 void JsonReader::accept_only(const std::set<std::string>& known) const {
-  std::string list;
-  for (const std::string& key : known) list += (list.empty() ? "" : ", ") + key;
   for (const auto& item : json_.items())
     if (known.count(item.key()) == 0)
-      throw InputError(where_ + ": unknown key '" + item.key() + "'; known are " + list);
+      throw InputError(where_ + ": unknown key '" + item.key() + "'; known are " + listed(known));
+}
+
+std::string JsonReader::only_key(const std::set<std::string>& known) const {
+  accept_only(known);
+  if (json_.size() == 1) return json_.begin().key();
+  throw InputError(where_ + ": found " + json_.dump() + "; expected exactly one of the keys " +
+                   listed(known));
 }
 
 }  // namespace esfem

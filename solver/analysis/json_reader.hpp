@@ -7,6 +7,9 @@
 
 namespace esfem {
 
+/// "a, b, c".
+std::string listed(const std::set<std::string>& names);
+
 /// Reads a JSON object key by key; every error is an InputError headed by `where` that names the key, what
 /// was expected and what was found. The JSON must outlive the reader.
 class JsonReader {
@@ -21,10 +24,14 @@ class JsonReader {
     return has(key) ? number(key) : otherwise;
   }
   int integer(const std::string& key) const;
+  /// An integer between low and high; `otherwise` where the key is not there.
+  int integer_within(const std::string& key, int otherwise, int low, int high) const;
   const nlohmann::json& object(const std::string& key) const;
   const nlohmann::json& array(const std::string& key) const;
   /// Throws when there is a key that is not in `known`, and lists these.
   void accept_only(const std::set<std::string>& known) const;
+  /// The one key of an object that must have exactly one of `known`.
+  std::string only_key(const std::set<std::string>& known) const;
   [[noreturn]] void wrong_type(const std::string& key, const char* expected,
                                const nlohmann::json& found) const;
   const std::string& where() const { return where_; }
