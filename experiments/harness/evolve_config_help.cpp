@@ -25,7 +25,8 @@ std::string evolve_config_help() {
                | {"alpha": 1, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30, "delta": 0.4,
                   "disturbance": 0.01, "seed": 1},                                             tumour_growth
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
-   "mesh": {"file": "a.msh"}                 .msh, .off, .obj, .ply, .stl; nodes are projected to the surface
+   "mesh": {"file": "a.msh"}                 .msh, .off, .obj, .ply, .stl: closed, of one or several parts; seams, polygons
+                                              and orientation are mended with a remark; nodes are projected to the surface
          | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
    "degree": 2,                               1..4

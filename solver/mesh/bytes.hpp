@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -10,19 +11,26 @@
 
 namespace esfem {
 
+/// Whether this machine stores numbers with the lowest byte first.
+inline bool is_little_endian() {
+  const std::uint16_t one = 1;
+  char first;
+  std::memcpy(&first, &one, 1);
+  return first == 1;
+}
+
 /// The numbers of a binary file, one after the other.
 class Bytes {
  public:
-  /// `file` names the file in errors; `content` must outlive the object. Reading starts at `position`.
-  /// swapped: the file's byte order is not that of this machine.
+  /// `file` names the file in errors; `content` must outlive the object. Reading starts at `position`, which
+  /// is in the content or at its end. swapped: the file's byte order is not that of this machine.
   Bytes(std::string file, std::string_view content, std::size_t position, bool swapped = false)
       : file_(std::move(file)), content_(content), position_(position), swapped_(swapped) {}
 
   /// The next number; `what` it is, for errors. Throws InputError when the file ends before.
   template <class Value>
   Value take(const char* what) {
-    if (content_.size() - position_ < sizeof(Value))
-      fail(std::string("the file ends here, ") + what + " expected");
+    if (left() < sizeof(Value)) fail(std::string("the file ends here, ") + what + " expected");
     char bytes[sizeof(Value)];
     std::memcpy(bytes, content_.data() + position_, sizeof(Value));
     if (swapped_) std::reverse(bytes, bytes + sizeof(Value));
@@ -30,6 +38,12 @@ class Bytes {
     Value value;
     std::memcpy(&value, bytes, sizeof(Value));
     return value;
+  }
+
+  /// Goes on by that many bytes, which must be there; `what` they are, for errors.
+  void skip(std::size_t bytes, const char* what) {
+    if (left() < bytes) fail(std::string("the file ends in ") + what);
+    position_ += bytes;
   }
 
   std::size_t position() const { return position_; }

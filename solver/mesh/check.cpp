@@ -2,12 +2,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
 #include "solver/mesh/mesh_file.hpp"
+#include "solver/mesh/orientation.hpp"
+#include "solver/mesh/sides.hpp"
 
 namespace esfem {
 
@@ -67,96 +70,119 @@ void check_duplicates(const Mesh& mesh, const MeshOrigin& origin) {
     std::sort(triangles[e].begin(), triangles[e].begin() + 3);
   }
   std::sort(triangles.begin(), triangles.end());
+  std::size_t first = 0;
+  int count = 0;
   for (std::size_t k = 1; k < triangles.size(); ++k)
-    if (std::equal(triangles[k].begin(), triangles[k].begin() + 3, triangles[k - 1].begin()))
-      fail(origin, origin.element(triangles[k][3]),
-           "duplicate, it has the corners of " + origin.element(triangles[k - 1][3]) +
-               ", every triangle once expected");
+    if (std::equal(triangles[k].begin(), triangles[k].begin() + 3, triangles[k - 1].begin()) && ++count == 1)
+      first = k;
+  if (count > 0)
+    fail(origin, origin.element(triangles[first][3]),
+         "duplicate, it has the corners of " + origin.element(triangles[first - 1][3]) +
+             format(" (%d such element%s), every triangle once expected", count, count > 1 ? "s" : ""));
 }
 
-/// One side of a triangle: half-edge 3 element + local edge.
-struct Side {
-  int low, high, half_edge;
+std::string point(const Mesh& mesh, const MeshOrigin& origin, int i) {
+  return origin.node(i) + format(" at (%g, %g, %g)", mesh.nodes(i, 0), mesh.nodes(i, 1), mesh.nodes(i, 2));
+}
+
+/// "between node 3 (..) at (..) and node 4 (..) at (..)".
+std::string between(const Mesh& mesh, const MeshOrigin& origin, int side) {
+  return "between " + point(mesh, origin, side_corner(mesh.elements, side, 0)) + " and " +
+         point(mesh, origin, side_corner(mesh.elements, side, 1));
+}
+
+/// No edge has more than two triangles.
+void check_manifold_edges(const Mesh& mesh, const MeshOrigin& origin, const std::vector<int>& twin) {
+  std::map<std::pair<int, int>, std::vector<int>> crowded;
+  for (int side = 0; side < int(twin.size()); ++side)
+    if (twin[side] == crowded_side)
+      crowded[std::minmax({side_corner(mesh.elements, side, 0), side_corner(mesh.elements, side, 1)})]
+          .push_back(side);
+  if (crowded.empty()) return;
+  const std::vector<int>& sides = crowded.begin()->second;
+  fail(origin, origin.element(sides[2] / 3),
+       format("not a manifold, %zu edge%s more than 2 triangles; the one ", crowded.size(),
+              crowded.size() > 1 ? "s have" : " has") +
+           between(mesh, origin, sides[0]) + format(" has %zu (the first is ", sides.size()) +
+           origin.element(sides[0] / 3) + "), 2 expected");
+}
+
+/// A closed line of open sides.
+struct BoundaryLoop {
+  int side = 0;  ///< one of them
+  int sides = 0;
+  double length = 0;
 };
 
-/// The half-edge on the other side of each half-edge.
-std::vector<int> twins(const Mesh& mesh, const MeshOrigin& origin) {
-  const auto corner = [&](int half_edge, int i) {
-    return mesh.elements(half_edge / 3, (half_edge % 3 + i) % 3);
-  };
-  std::vector<Side> sides;
-  for (int h = 0; h < 3 * mesh.elements.rows(); ++h)
-    sides.push_back({std::min(corner(h, 0), corner(h, 1)), std::max(corner(h, 0), corner(h, 1)), h});
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return std::tie(a.low, a.high, a.half_edge) < std::tie(b.low, b.high, b.half_edge);
-  });
+/// The open side that follows on an open side, at its second corner when `forward`, else at its first; sets
+/// `forward` for the next step. Elements need not be oriented alike.
+int next_open_side(const Connectivity& elements, const std::vector<int>& twin, int side, bool& forward) {
+  const int corner = side_corner(elements, side, forward);
+  do {
+    side = side_corner(elements, side, 1) == corner ? side_after(side) : side_before(side);
+    if (twin[side] == open_side) break;
+    side = twin[side];
+  } while (true);
+  forward = side_corner(elements, side, 0) == corner;
+  return side;
+}
 
-  std::vector<int> twin(sides.size());
-  for (std::size_t k = 0; k < sides.size();) {
-    std::size_t end = k;
-    while (end < sides.size() && sides[end].low == sides[k].low && sides[end].high == sides[k].high) ++end;
-    const int a = sides[k].half_edge;
-    const std::string edge =
-        "the edge between " + origin.node(sides[k].low) + " and " + origin.node(sides[k].high);
-    if (end == k + 1)
-      fail(origin, origin.element(a / 3),
-           "not closed, " + edge + " has no second triangle, a closed surface expected");
-    const int b = sides[k + 1].half_edge;
-    if (end > k + 2)
-      fail(origin, origin.element(sides[k + 2].half_edge / 3),
-           "not a manifold, " + edge + format(" has %d triangles", int(end - k)) + " (the first is " +
-               origin.element(a / 3) + "), 2 expected");
-    if (corner(a, 0) == corner(b, 0))
-      fail(origin, origin.element(b / 3),
-           "oriented against its neighbour " + origin.element(a / 3) + " at " + edge +
-               ", the same orientation expected");
-    twin[a] = b;
-    twin[b] = a;
-    k = end;
+std::vector<BoundaryLoop> boundary_loops(const Mesh& mesh, const std::vector<int>& twin) {
+  std::vector<BoundaryLoop> loops;
+  std::vector<bool> passed(twin.size(), false);
+  for (int first = 0; first < int(twin.size()); ++first) {
+    if (twin[first] != open_side || passed[first]) continue;
+    BoundaryLoop loop{first};
+    bool forward = true;
+    int side = first;
+    do {
+      passed[side] = true;
+      ++loop.sides;
+      loop.length += (mesh.nodes.row(side_corner(mesh.elements, side, 0)) -
+                      mesh.nodes.row(side_corner(mesh.elements, side, 1)))
+                         .norm();
+      side = next_open_side(mesh.elements, twin, side, forward);
+    } while (!passed[side]);
+    loops.push_back(loop);
   }
-  return twin;
+  return loops;
+}
+
+/// Every edge has two triangles, when none has more.
+void check_closed(const Mesh& mesh, const MeshOrigin& origin, const std::vector<int>& twin) {
+  const std::vector<BoundaryLoop> loops = boundary_loops(mesh, twin);
+  if (loops.empty()) return;
+  const BoundaryLoop& longest =
+      *std::max_element(loops.begin(), loops.end(),
+                        [](const BoundaryLoop& a, const BoundaryLoop& b) { return a.length < b.length; });
+  fail(origin, origin.element(longest.side / 3),
+       format("not closed, %zu boundary loop%s; the longest has %d edge%s, length %g and the edge ",
+              loops.size(), loops.size() > 1 ? "s" : "", longest.sides, longest.sides > 1 ? "s" : "",
+              longest.length) +
+           between(mesh, origin, longest.side) + ", a closed surface expected");
 }
 
 /// The triangles at every corner form one fan.
 void check_fans(const Mesh& mesh, const MeshOrigin& origin, const std::vector<int>& twin) {
   std::vector<int> triangles(mesh.nodes.rows(), 0), first(mesh.nodes.rows(), -1);
-  for (int h = 0; h < int(twin.size()); ++h) {
-    const int v = mesh.elements(h / 3, h % 3);
+  for (int side = 0; side < int(twin.size()); ++side) {
+    const int v = side_corner(mesh.elements, side, 0);
     ++triangles[v];
-    if (first[v] < 0) first[v] = h;
+    if (first[v] < 0) first[v] = side;
   }
   for (int v = 0; v < mesh.nodes.rows(); ++v) {
     if (first[v] < 0) continue;
-    int fan = 0, h = first[v];
+    int fan = 0, side = first[v];
     do {
       ++fan;
-      h = twin[h / 3 * 3 + (h + 2) % 3];
-    } while (h != first[v]);
+      side = twin[side_before(side)];
+    } while (side != first[v]);
     if (fan != triangles[v])
       fail(origin, origin.node(v),
            format("not a manifold, only %d of the %d triangles that meet here are neighbours", fan,
                   triangles[v]) +
                " of one another (" + origin.element(first[v] / 3) + " is one), a single fan expected");
   }
-}
-
-void check_connected(const MeshOrigin& origin, const std::vector<int>& twin) {
-  std::vector<bool> reached(twin.size() / 3, false);
-  std::vector<int> todo{0};
-  reached[0] = true;
-  while (!todo.empty()) {
-    const int e = todo.back();
-    todo.pop_back();
-    for (int i = 0; i < 3; ++i) {
-      const int neighbour = twin[3 * e + i] / 3;
-      if (!reached[neighbour]) todo.push_back(neighbour);
-      reached[neighbour] = true;
-    }
-  }
-  const auto other = std::find(reached.begin(), reached.end(), false);
-  if (other != reached.end())
-    fail(origin, origin.element(int(other - reached.begin())),
-         "not connected with " + origin.element(0) + ", one connected surface expected");
 }
 
 /// Neighbours have the same nodes on their edge, and no node plays two parts.
@@ -189,30 +215,6 @@ void check_curved_edges(const Mesh& mesh, const MeshOrigin& origin, const std::v
     }
 }
 
-double enclosed_volume(const Mesh& mesh) {
-  const Vec3 origin = mesh.nodes.row(mesh.elements(0, 0));
-  double volume = 0;
-  for (int e = 0; e < mesh.elements.rows(); ++e) {
-    const Vec3 a = mesh.nodes.row(mesh.elements(e, 0)), b = mesh.nodes.row(mesh.elements(e, 1)),
-               c = mesh.nodes.row(mesh.elements(e, 2));
-    volume += (a - origin).dot((b - origin).cross(c - origin)) / 6;
-  }
-  return volume;
-}
-
-/// Swaps the second and the third corner of every element, and all other nodes with them.
-void reverse_orientation(Mesh& mesh) {
-  const int on_edge = mesh.degree - 1, inner = 3 + 3 * on_edge;
-  std::vector<int> from{0, 2, 1};
-  for (int edge : {2, 1, 0})
-    for (int i = on_edge - 1; i >= 0; --i) from.push_back(3 + edge * on_edge + i);
-  const int count = int(mesh.elements.cols()) - inner;
-  if (count == 1) from.push_back(inner);
-  if (count == 3) from.insert(from.end(), {inner, inner + 2, inner + 1});
-  const Connectivity turned = mesh.elements(Eigen::all, from);
-  mesh.elements = turned;
-}
-
 }  // namespace
 
 std::string MeshOrigin::node(int i) const {
@@ -223,7 +225,7 @@ std::string MeshOrigin::element(int e) const {
   return label("element", e, element_tags, element_lines);
 }
 
-bool check_closed_surface(Mesh& mesh, const MeshOrigin& origin) {
+std::string check_closed_surface(Mesh& mesh, const MeshOrigin& origin) {
   if (mesh.elements.rows() == 0)
     throw InputError(origin.source + ": no triangle, a closed triangulated surface expected");
   if (mesh.nodes.cols() != 3 || mesh.elements.cols() != nodes_per_element(mesh.degree))
@@ -233,13 +235,14 @@ bool check_closed_surface(Mesh& mesh, const MeshOrigin& origin) {
   check_nodes(mesh, origin);
   check_elements(mesh, origin);
   check_duplicates(mesh, origin);
-  const std::vector<int> twin = twins(mesh, origin);
+  std::vector<int> twin = side_twins(mesh.elements);
+  check_manifold_edges(mesh, origin, twin);
+  check_closed(mesh, origin, twin);
+  const std::string remark = orient(mesh, origin, twin);
+  if (!remark.empty()) twin = side_twins(mesh.elements);
   check_fans(mesh, origin, twin);
-  check_connected(origin, twin);
   check_curved_edges(mesh, origin, twin);
-  const bool inward = enclosed_volume(mesh) < 0;
-  if (inward) reverse_orientation(mesh);
-  return inward;
+  return remark;
 }
 
 }  // namespace esfem

@@ -20,21 +20,30 @@ struct MeshOrigin {
   std::string element(int e) const;
 };
 
-/// A mesh as its file has it, before any check of the surface.
+/// A mesh as its file has it, before any check of the surface; elements name nodes that exist.
 struct MeshFile {
   Mesh mesh;
   MeshOrigin origin;
+  std::vector<std::string> remarks;  ///< what the reader changed
 };
 
 /// Reads the text of a Gmsh file, MSH 2.2 or 4.1 (ASCII).
 MeshFile parse_msh(const std::string& file, const std::string& text);
 
-/// Reads the content of an OFF, OBJ, PLY or STL file by CGAL; extension is one of off, obj, ply, stl.
-MeshFile parse_polygon_soup(const std::string& file, const std::string& content,
-                            const std::string& extension);
+/// Read the content of a file: OFF of Geomview (ASCII and binary), Wavefront OBJ, PLY (ASCII and binary), STL
+/// (ASCII and binary). Polygons are cut into triangles. Throw InputError that names the file, and the line,
+/// byte or element.
+MeshFile parse_off(const std::string& file, const std::string& content);
+MeshFile parse_obj(const std::string& file, const std::string& content);
+MeshFile parse_ply(const std::string& file, const std::string& content);
+MeshFile parse_stl(const std::string& file, const std::string& content);
 
-/// Throws InputError unless the mesh is one closed, manifold, consistently oriented surface of sound
-/// elements. Turns an inward orientation; returns whether it did.
-bool check_closed_surface(Mesh& mesh, const MeshOrigin& origin);
+/// `repair`, then `check_closed_surface`; returns all remarks in one line. What was changed before an error
+/// is said there, too.
+std::string repair_and_check(MeshFile& file);
+
+/// Throws InputError unless the mesh is a closed, manifold surface of sound elements, with one or several
+/// components. Turns elements as `orient` does; returns the remark on it.
+std::string check_closed_surface(Mesh& mesh, const MeshOrigin& origin);
 
 }  // namespace esfem

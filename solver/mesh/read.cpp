@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/mesh/read.hpp"
 
-#include <algorithm>
 #include <cctype>
 #include <fstream>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "solver/error.hpp"
 #include "solver/mesh/mesh_file.hpp"
+#include "solver/mesh/repair.hpp"
 
 namespace esfem {
 
@@ -30,65 +32,49 @@ std::string content_of(const std::string& file) {
   return content.str();
 }
 
-template <class Value>
-void keep(std::vector<Value>& values, const std::vector<int>& kept) {
-  if (values.empty()) return;
-  std::vector<Value> result;
-  for (int i : kept) result.push_back(values[i]);
-  values = std::move(result);
+std::string joined(const std::vector<std::string>& remarks) {
+  std::string text;
+  for (const std::string& remark : remarks)
+    if (!remark.empty()) text += (text.empty() ? "" : "; ") + remark;
+  return text;
 }
 
-/// Returns how many nodes were dropped. Nodes that an element names but that do not exist are left to the
-/// check.
-int drop_unused_nodes(MeshFile& read) {
-  const int n = int(read.mesh.nodes.rows());
-  std::vector<int> number(n, -1), kept;
-  for (int i : read.mesh.elements.reshaped()) {
-    if (i < 0 || i >= n) return 0;
-    number[i] = 0;
-  }
-  for (int i = 0; i < n; ++i)
-    if (number[i] == 0) {
-      number[i] = int(kept.size());
-      kept.push_back(i);
-    }
-  if (int(kept.size()) == n) return 0;
-  const Field nodes = read.mesh.nodes(kept, Eigen::all);
-  read.mesh.nodes = nodes;
-  for (int& i : read.mesh.elements.reshaped()) i = number[i];
-  // Numbers in errors stay those of the file.
-  if (read.origin.node_tags.empty())
-    for (int i = 0; i < n; ++i) read.origin.node_tags.push_back(i + 1);
-  keep(read.origin.node_tags, kept);
-  keep(read.origin.node_lines, kept);
-  return n - int(kept.size());
+using Parser = MeshFile (*)(const std::string& file, const std::string& content);
+
+Parser parser_of(const std::string& file) {
+  const std::string extension = lower_case_extension(file);
+  const std::pair<const char*, Parser> parsers[] = {
+      {"msh", parse_msh}, {"off", parse_off}, {"obj", parse_obj}, {"ply", parse_ply}, {"stl", parse_stl}};
+  for (const auto& [known, parser] : parsers)
+    if (extension == known) return parser;
+  throw InputError(format("%s: unknown mesh format '%s', .msh, .off, .obj, .ply or .stl expected",
+                          file.c_str(), extension.c_str()));
 }
 
 }  // namespace
 
-ReadMesh read_mesh(const std::string& file) {
-  const std::string extension = lower_case_extension(file);
-  const std::string known[] = {"msh", "off", "obj", "ply", "stl"};
-  if (std::find(std::begin(known), std::end(known), extension) == std::end(known))
-    throw InputError(format("%s: unknown mesh format '%s', .msh, .off, .obj, .ply or .stl expected",
-                            file.c_str(), extension.c_str()));
-  const std::string content = content_of(file);
-  MeshFile read =
-      extension == "msh" ? parse_msh(file, content) : parse_polygon_soup(file, content, extension);
+std::string repair_and_check(MeshFile& file) {
+  repair(file);
+  try {
+    file.remarks.push_back(check_closed_surface(file.mesh, file.origin));
+  } catch (const InputError& error) {
+    if (file.remarks.empty()) throw;
+    throw InputError(std::string(error.what()) + " (before: " + joined(file.remarks) + ")");
+  }
+  return joined(file.remarks);
+}
 
-  ReadMesh result;
-  if (const int dropped = drop_unused_nodes(read))
-    result.remark = format("%d node%s in no triangle: dropped", dropped, dropped > 1 ? "s" : "");
-  if (check_closed_surface(read.mesh, read.origin))
-    result.remark += (result.remark.empty() ? "" : "; ") + std::string("orientation was inward: turned");
-  result.mesh = std::move(read.mesh);
-  return result;
+ReadMesh read_mesh(const std::string& file) {
+  const Parser parse = parser_of(file);
+  MeshFile read = parse(file, content_of(file));
+  const std::string remark = repair_and_check(read);
+  return {std::move(read.mesh), remark};
 }
 
 std::string check_closed_surface(Mesh& mesh, const std::string& source) {
   MeshOrigin origin;
   origin.source = source;
-  return check_closed_surface(mesh, origin) ? "orientation was inward: turned" : "";
+  return check_closed_surface(mesh, origin);
 }
 
 }  // namespace esfem

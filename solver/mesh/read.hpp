@@ -12,17 +12,20 @@ struct ReadMesh {
   std::string remark;  ///< empty, or what was changed ("orientation was inward: turned")
 };
 
-/// Reads a closed triangulated surface: Gmsh MSH 2.2 and 4.1 (.msh; 3- and 6-node triangles, curved nodes
-/// kept), OFF, OBJ, PLY, STL. Throws InputError, one line that names the file, the line or element, and what
-/// was expected, for a file that is missing, cut off, not closed, not connected, non-manifold, inconsistently
-/// oriented, with NaN, with degenerate or duplicate triangles, or with other elements. Nodes and elements
-/// have the file's own numbers in errors (MSH) or are counted from 1. Points and lines of MSH files are
-/// skipped; nodes in no triangle are dropped, and the remark says so.
+/// Reads a closed triangulated surface of one or several components: Gmsh MSH 2.2 and 4.1 (.msh; 3- and
+/// 6-node triangles, curved nodes kept), OFF, OBJ, PLY, STL. What can be mended without a guess is mended,
+/// and the remark says so: polygons are cut into triangles, nodes in no triangle are dropped, nodes in one
+/// place along open sides are joined, elements with two equal corners are dropped (`repair`), elements are
+/// oriented alike and outward (`orient`). Throws InputError, one line that names the file, the line or
+/// element, and what was expected, for a file that is missing, cut off or not of its format, and for a
+/// surface that is not closed, non-manifold, not orientable, pressed flat, or has NaN, degenerate or
+/// duplicate triangles, or other elements. Nodes and elements have the file's own numbers in errors (MSH) or
+/// are counted from 1. Points and lines of MSH files are skipped.
 ReadMesh read_mesh(const std::string& file);
 
-/// The checks of `read_mesh` on a mesh of any degree that comes from elsewhere; `source` names it in errors.
-/// Turns an inward orientation and returns the remark, "" when nothing was changed. A node in no element is
-/// an error here.
+/// The checks of `read_mesh` on a mesh of any degree that comes from elsewhere, without its repairs; `source`
+/// names it in errors. Turns elements as `orient` does and returns the remark, "" when nothing was changed. A
+/// node in no element is an error here.
 std::string check_closed_surface(Mesh& mesh, const std::string& source);
 
 /// Writes a mesh of degree 1 or 2 as Gmsh MSH 4.1 (ASCII, 17 digits: reading it gives the same bits).
