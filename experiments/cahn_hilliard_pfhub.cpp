@@ -273,14 +273,7 @@ void integrate_run(const Run& run, Flow& flow, const State& start, const Observe
 void release(const Mesh& linear, const Field& c, Row& row) {
   Mesh mesh = lagrange_mesh(linear, 2);
   project_nodes(mesh, sphere(PfhubSphere::radius));
-  Field c_fine(mesh.nodes.rows(), 1);
-  for (int e = 0; e < mesh.elements.rows(); ++e) {
-    for (int a = 0; a < 3; ++a) {
-      const int i = linear.elements(e, a), j = linear.elements(e, (a + 1) % 3);
-      c_fine(mesh.elements(e, a)) = c(i);
-      c_fine(mesh.elements(e, a + 3)) = (c(i) + c(j)) / 2;
-    }
-  }
+  const Field c_fine = lagrange_values(linear, c, mesh);
   const SurfaceSpace space(mesh);
   const NodalMotion at_rest = [&](double) -> const Field& { return mesh.nodes; };
   Flow flow(space, PfhubSphere(), at_rest, PfhubSphere::epsilon, linearised_again_from);

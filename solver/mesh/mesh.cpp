@@ -25,20 +25,47 @@ Vec3 node(const Field& x, int i) {
   return x.row(i).transpose();
 }
 
-}  // namespace
+/// For each local node of degree `to` the one of degree `from` at the same place, or -1.
+std::vector<int> same_local_nodes(int from, int to) {
+  const auto given = reference_nodes(from), wanted = reference_nodes(to);
+  std::vector<int> same(wanted.rows(), -1);
+  for (int i = 0; i < wanted.rows(); ++i)
+    for (int j = 0; j < given.rows(); ++j)
+      if ((wanted.row(i) - given.row(j)).norm() < 1e-12) same[i] = j;
+  return same;
+}
 
-Mesh lagrange_mesh(const Mesh& mesh, int degree) {
+/// The nodes that are one of these local nodes (-1: none) of some element, in their order.
+std::vector<int> nodes_at(const Mesh& mesh, const std::vector<int>& local) {
+  std::vector<bool> used(mesh.nodes.rows(), false);
+  for (int e = 0; e < mesh.elements.rows(); ++e)
+    for (int i : local)
+      if (i >= 0) used[mesh.elements(e, i)] = true;
+  std::vector<int> nodes;
+  for (int i = 0; i < int(used.size()); ++i)
+    if (used[i]) nodes.push_back(i);
+  return nodes;
+}
+
+/// lagrange_mesh of any degree, the same one included: then nodes in no element are dropped.
+Mesh with_degree(const Mesh& mesh, int degree) {
   const int local = nodes_per_element(degree);
-  if (degree == mesh.degree) return mesh;
   const Eigen::MatrixXd interpolation = shape_functions(mesh.degree, reference_nodes(degree)).value;
-  const int on_edge = degree - 1, inner = local - 3 - 3 * on_edge;
+  const std::vector<int> same = same_local_nodes(mesh.degree, degree);
+  const std::vector<int> kept = nodes_at(mesh, same);
+  const int on_edge = degree - 1, inner = 3 + 3 * on_edge;
 
   Mesh result;
   result.degree = degree;
   result.elements.resize(mesh.elements.rows(), local);
   std::vector<Vec3> nodes;
-  std::vector<int> corner_number(mesh.nodes.rows(), -1);
-  // First node of an edge's run, which goes from the edge's smaller corner to its larger one.
+  std::vector<int> number(mesh.nodes.rows(), -1);
+  // Given nodes are taken over as they are: interpolation would round them.
+  for (int i : kept) {
+    number[i] = int(nodes.size());
+    nodes.push_back(node(mesh.nodes, i));
+  }
+  // The first new node of an edge; they go from the edge's smaller corner to its larger one.
   std::unordered_map<std::uint64_t, int> edge_start;
   edge_start.reserve(mesh.elements.rows() * 3 / 2);
 
@@ -47,28 +74,24 @@ Mesh lagrange_mesh(const Mesh& mesh, int degree) {
     for (int i = 0; i < old.rows(); ++i) old.row(i) = mesh.nodes.row(mesh.elements(e, i));
     const Eigen::MatrixXd x = interpolation * old;
 
-    // Nodes are numbered where an element first touches them, so neighbours in space are neighbours in
-    // memory.
-    for (int i = 0; i < 3; ++i) {
-      int& number = corner_number[mesh.elements(e, i)];
-      if (number < 0) {
-        number = int(nodes.size());
-        // A corner is taken over as it is: interpolation would round it.
-        nodes.push_back(node(mesh.nodes, mesh.elements(e, i)));
-      }
-      result.elements(e, i) = number;
-    }
-    for (int edge = 0; on_edge > 0 && edge < 3; ++edge) {
-      const int a = mesh.elements(e, edge), b = mesh.elements(e, (edge + 1) % 3);
+    for (int i = 0; i < local; ++i)
+      if (same[i] >= 0) result.elements(e, i) = number[mesh.elements(e, same[i])];
+    // New nodes are numbered where an element first touches them, so that neighbours in space are neighbours
+    // in memory.
+    for (int edge = 0; edge < 3; ++edge) {
+      const int a = mesh.elements(e, edge), b = mesh.elements(e, (edge + 1) % 3), first = 3 + edge * on_edge;
+      std::vector<int> columns;
+      for (int i = first; i < first + on_edge; ++i)
+        if (same[i] < 0) columns.push_back(i);
+      if (a > b) std::reverse(columns.begin(), columns.end());
       const auto [entry, is_new] = edge_start.try_emplace(edge_key(a, b), int(nodes.size()));
-      if (is_new) nodes.resize(nodes.size() + on_edge);
-      for (int i = 0; i < on_edge; ++i) {
-        const int number = entry->second + (a < b ? i : on_edge - 1 - i), column = 3 + edge * on_edge + i;
-        result.elements(e, column) = number;
-        if (is_new) nodes[number] = node(x, column);
+      for (std::size_t i = 0; i < columns.size(); ++i) {
+        result.elements(e, columns[i]) = entry->second + int(i);
+        if (is_new) nodes.push_back(node(x, columns[i]));
       }
     }
-    for (int i = local - inner; i < local; ++i) {
+    for (int i = inner; i < local; ++i) {
+      if (same[i] >= 0) continue;
       result.elements(e, i) = int(nodes.size());
       nodes.push_back(node(x, i));
     }
@@ -78,22 +101,27 @@ Mesh lagrange_mesh(const Mesh& mesh, int degree) {
   return result;
 }
 
-Mesh corner_mesh(const Mesh& mesh) {
-  std::vector<int> number(mesh.nodes.rows(), -1);
-  for (int e = 0; e < mesh.elements.rows(); ++e)
-    for (int i = 0; i < 3; ++i) number[mesh.elements(e, i)] = 0;
-  int corners = 0;
-  for (int& n : number)
-    if (n == 0) n = corners++;
+}  // namespace
 
-  Mesh result;
-  result.nodes.resize(corners, 3);
-  for (int i = 0; i < mesh.nodes.rows(); ++i)
-    if (number[i] >= 0) result.nodes.row(number[i]) = mesh.nodes.row(i);
-  result.elements.resize(mesh.elements.rows(), 3);
-  for (int e = 0; e < mesh.elements.rows(); ++e)
-    for (int i = 0; i < 3; ++i) result.elements(e, i) = number[mesh.elements(e, i)];
+Mesh lagrange_mesh(const Mesh& mesh, int degree) {
+  return degree == mesh.degree ? mesh : with_degree(mesh, degree);
+}
+
+Field lagrange_values(const Mesh& mesh, const Field& values, const Mesh& refined) {
+  if (refined.degree == mesh.degree) return values;
+  const Eigen::MatrixXd interpolation = shape_functions(mesh.degree, reference_nodes(refined.degree)).value;
+  const std::vector<int> same = same_local_nodes(mesh.degree, refined.degree);
+  Field result(refined.nodes.rows(), values.cols());
+  for (int e = 0; e < mesh.elements.rows(); ++e) {
+    const Field old = values(mesh.elements.row(e), Eigen::all), at_nodes = interpolation * old;
+    for (int i = 0; i < refined.elements.cols(); ++i)
+      result.row(refined.elements(e, i)) = same[i] >= 0 ? old.row(same[i]) : at_nodes.row(i);
+  }
   return result;
+}
+
+Mesh corner_mesh(const Mesh& mesh) {
+  return with_degree(mesh, 1);
 }
 
 void project_nodes(Mesh& mesh, const Surface& surface) {

@@ -17,10 +17,14 @@ struct Mesh {
 };
 
 /// The P_k mesh with the same element maps as the given one (nodes at the reference nodes of degree k, not
-/// projected onto any surface). The same degree gives the mesh unchanged, with its node order; else nodes are
-/// numbered where an element first touches them. A lower degree keeps the positions of its nodes, not the
-/// maps. Throws InputError unless 1 <= degree <= 4.
+/// projected onto any surface). Nodes that both have come first, in the order of the given mesh: the corners,
+/// and all nodes from degree 2 to 4. The others follow where an element first touches them. The same degree
+/// gives the mesh unchanged. A lower degree keeps the positions of its nodes, not the maps. Throws InputError
+/// unless 1 <= degree <= 4.
 Mesh lagrange_mesh(const Mesh& mesh, int degree);
+
+/// Nodal values (N x m) on a mesh as nodal values on `refined`, its lagrange_mesh of any degree.
+Field lagrange_values(const Mesh& mesh, const Field& values, const Mesh& refined);
 
 /// The corner triangles as a P1 mesh; keeps the corners' order, drops the other nodes.
 Mesh corner_mesh(const Mesh& mesh);

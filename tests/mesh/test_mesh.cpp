@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <random>
 
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
@@ -92,6 +95,56 @@ TEST_P(LagrangeMesh, OfTheSameDegreeIsUnchanged) {
   const Mesh same = lagrange_mesh(mesh, GetParam());
   EXPECT_EQ(same.nodes, mesh.nodes);
   EXPECT_EQ(same.elements, mesh.elements);
+}
+
+namespace {
+
+/// The sphere of flat triangles with nodes of some degree, under random numbers of its nodes.
+Mesh shuffled(int degree) {
+  Mesh mesh = lagrange_mesh(icosphere(1, 1), degree);
+  std::vector<int> number(mesh.nodes.rows());
+  std::iota(number.begin(), number.end(), 0);
+  std::shuffle(number.begin(), number.end(), std::mt19937(1));
+  const Field nodes = mesh.nodes;
+  for (std::size_t i = 0; i < number.size(); ++i) mesh.nodes.row(number[i]) = nodes.row(i);
+  for (int& i : mesh.elements.reshaped()) i = number[i];
+  return mesh;
+}
+
+}  // namespace
+
+TEST_P(LagrangeMesh, KeepsTheOrderOfTheGivenNodes) {
+  const Mesh corners = shuffled(1), mesh = lagrange_mesh(corners, GetParam());
+  EXPECT_EQ(mesh.nodes.topRows(corners.nodes.rows()), corners.nodes);
+  EXPECT_EQ(mesh.elements.leftCols(3), corners.elements);
+  EXPECT_EQ(mismatched_edges(mesh), 0);
+  EXPECT_LT(distance_of_maps(corners, mesh), 1e-15);
+}
+
+TEST_P(LagrangeMesh, KeepsTheOrderOfTheNodesThatBothHave) {
+  const Mesh curved = shuffled(2), mesh = lagrange_mesh(curved, GetParam());
+  if (GetParam() == 4) {
+    EXPECT_EQ(mesh.nodes.topRows(curved.nodes.rows()), curved.nodes);
+    EXPECT_EQ(mesh.elements.leftCols(3), curved.elements.leftCols(3));
+    EXPECT_EQ(mesh.elements.col(4), curved.elements.col(3));
+  }
+  // The corners are those of the given mesh, in its order.
+  std::map<int, int> number;
+  for (int e = 0; e < mesh.elements.rows(); ++e)
+    for (int i = 0; i < 3; ++i) number[curved.elements(e, i)] = mesh.elements(e, i);
+  int last = -1;
+  for (const auto& [given, mine] : number) {
+    EXPECT_EQ(mesh.nodes.row(mine), curved.nodes.row(given));
+    EXPECT_GT(mine, last);
+    last = mine;
+  }
+}
+
+TEST_P(LagrangeMesh, TakesNodalValuesAlong) {
+  const Mesh given = shuffled(2), mesh = lagrange_mesh(given, GetParam());
+  const auto linear = [](const Field& x) -> Field { return 2 * x.col(0) - x.col(1) + x.col(2); };
+  const Field values = lagrange_values(given, linear(given.nodes), mesh);
+  EXPECT_LT((values - linear(mesh.nodes)).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(LagrangeMeshErrors, DegreeMustBeKnown) {
