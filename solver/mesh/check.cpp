@@ -16,11 +16,12 @@ namespace esfem {
 
 namespace {
 
-std::string label(const char* kind, int i, const std::vector<long>& tags, const std::vector<int>& lines) {
+std::string label(const char* kind, int i, const std::vector<long>& tags, const std::vector<int>& lines,
+                  bool own_numbers) {
   std::string text = format("%s %ld", kind, tags.empty() ? long(i) + 1 : tags[i]);
   if (!lines.empty())
     text += format(" (line %d)", lines[i]);
-  else
+  else if (!own_numbers)
     text += " (counted from 1)";
   return text;
 }
@@ -218,11 +219,11 @@ void check_curved_edges(const Mesh& mesh, const MeshOrigin& origin, const std::v
 }  // namespace
 
 std::string MeshOrigin::node(int i) const {
-  return label("node", i, node_tags, node_lines);
+  return label("node", i, node_tags, node_lines, own_numbers);
 }
 
 std::string MeshOrigin::element(int e) const {
-  return label("element", e, element_tags, element_lines);
+  return label("element", e, element_tags, element_lines, own_numbers);
 }
 
 std::string check_closed_surface(Mesh& mesh, const MeshOrigin& origin) {

@@ -75,6 +75,12 @@ double Lines::coordinate(int i) const {
   return x;
 }
 
+void Lines::skip(std::size_t bytes) {
+  const std::string_view skipped = rest_.substr(0, bytes);
+  number_ += int(std::count(skipped.begin(), skipped.end(), '\n'));
+  rest_.remove_prefix(skipped.size());
+}
+
 void Lines::fail(const std::string& message) const {
   throw InputError(format("%s: line %d: %s", file_.c_str(), std::max(number_, 1), message.c_str()));
 }

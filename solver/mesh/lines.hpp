@@ -59,6 +59,8 @@ class Lines {
 
   /// What comes after the current line: a binary part starts there.
   std::string_view rest() const { return rest_; }
+  /// Goes on behind that many bytes of it; lines in them are counted.
+  void skip(std::size_t bytes);
 
  private:
   /// Appends the words of the next line; false at the end of the file.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/mesh/mesh.hpp"
+#include "solver/mesh/write_vtu.hpp"
 
 namespace esfem {
 
@@ -14,8 +15,10 @@ struct MeshOrigin {
   /// The file's own numbers and lines; empty when the file has none: then the 1-based position is the number.
   std::vector<long> node_tags, element_tags;
   std::vector<int> node_lines, element_lines;
+  bool own_numbers = false;  ///< the numbers are written in the file, not counted
 
-  /// "node 7 (line 12)", or "node 7 (counted from 1)" when the lines are not known.
+  /// "node 7 (line 12)", or "node 7 (counted from 1)" when the lines are not known; a number that the file
+  /// has stands alone then.
   std::string node(int i) const;
   std::string element(int e) const;
 };
@@ -24,11 +27,15 @@ struct MeshOrigin {
 struct MeshFile {
   Mesh mesh;
   MeshOrigin origin;
-  std::vector<std::string> remarks;  ///< what the reader changed
+  std::vector<std::string> remarks = {};  ///< what the reader changed
+  std::vector<PointField> fields = {};    ///< nodal values that the file has; nan where it has none
 };
 
-/// Reads the text of a Gmsh file, MSH 2.2 or 4.1 (ASCII).
+/// Reads the content of a Gmsh file, MSH 2.2 or 4.1, ASCII or binary.
 MeshFile parse_msh(const std::string& file, const std::string& text);
+
+/// Reads the content of a VTU file of write_vtu.
+MeshFile parse_vtu(const std::string& file, const std::string& content);
 
 /// Read the content of a file: OFF of Geomview (ASCII and binary), Wavefront OBJ, PLY (ASCII and binary), STL
 /// (ASCII and binary). Polygons are cut into triangles. Throw InputError that names the file, and the line,

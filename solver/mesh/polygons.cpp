@@ -137,12 +137,15 @@ MeshFile triangulated(Polygons&& polygons) {
   result.origin = std::move(polygons.origin);
   MeshOrigin& origin = result.origin;
   const std::vector<int> lines = std::move(origin.element_lines);
+  const std::vector<long> tags = std::move(origin.element_tags);
   origin.element_lines.clear();
+  origin.element_tags.clear();
+  const auto tag = [&](std::size_t e) { return tags.empty() ? long(e) + 1 : tags[e]; };
   const std::vector<Vec3>& x = polygons.points;
   const auto complain = [&](std::size_t e, const std::string& what) {
     const std::string line = lines.empty() ? "counted from 1" : format("line %d", lines[e]);
     throw InputError(
-        format("%s: element %zu (%s): %s", origin.source.c_str(), e + 1, line.c_str(), what.c_str()));
+        format("%s: element %ld (%s): %s", origin.source.c_str(), tag(e), line.c_str(), what.c_str()));
   };
 
   Triangles triangles;
@@ -165,7 +168,7 @@ MeshFile triangulated(Polygons&& polygons) {
     } catch (const InputError& error) {
       complain(e, error.what());
     }
-    origin.element_tags.resize(triangles.size(), long(e) + 1);
+    origin.element_tags.resize(triangles.size(), tag(e));
     if (!lines.empty()) origin.element_lines.resize(triangles.size(), lines[e]);
   }
   if (cut_polygons > 0)

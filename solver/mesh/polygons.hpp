@@ -13,7 +13,7 @@ struct Polygons {
   std::vector<long> corners;  ///< of all polygons, one after the other: the file's numbers of its points
   std::vector<int> sizes;     ///< how many corners each polygon has
   long first = 0;             ///< the file's number of its first point
-  MeshOrigin origin;          ///< source and lines; numbers are positions
+  MeshOrigin origin;          ///< source, lines and, where they are not positions, numbers
 };
 
 /// The triangles of the polygons, degree 1, in their order; quadrangles are cut along the diagonal that gives

@@ -43,12 +43,21 @@ using Parser = MeshFile (*)(const std::string& file, const std::string& content)
 
 Parser parser_of(const std::string& file) {
   const std::string extension = lower_case_extension(file);
-  const std::pair<const char*, Parser> parsers[] = {
-      {"msh", parse_msh}, {"off", parse_off}, {"obj", parse_obj}, {"ply", parse_ply}, {"stl", parse_stl}};
+  const std::pair<const char*, Parser> parsers[] = {{"msh", parse_msh}, {"vtu", parse_vtu},
+                                                    {"off", parse_off}, {"obj", parse_obj},
+                                                    {"ply", parse_ply}, {"stl", parse_stl}};
   for (const auto& [known, parser] : parsers)
     if (extension == known) return parser;
-  throw InputError(format("%s: unknown mesh format '%s', .msh, .off, .obj, .ply or .stl expected",
-                          file.c_str(), extension.c_str()));
+  throw InputError(
+      format("%s: unknown mesh format '%s', .msh, .off, .obj, .ply, .stl or .vtu (of evolve) expected; "
+             "plots/convert_mesh.py IN OUT.msh converts what meshio reads (VTK, VTU, XDMF, ...)",
+             file.c_str(), extension.c_str()));
+}
+
+std::vector<long> numbers_of(const MeshOrigin& origin) {
+  for (std::size_t i = 0; i < origin.node_tags.size(); ++i)
+    if (origin.node_tags[i] != long(i) + 1) return origin.node_tags;
+  return {};
 }
 
 }  // namespace
@@ -68,7 +77,7 @@ ReadMesh read_mesh(const std::string& file) {
   const Parser parse = parser_of(file);
   MeshFile read = parse(file, content_of(file));
   const std::string remark = repair_and_check(read);
-  return {std::move(read.mesh), remark};
+  return {std::move(read.mesh), remark, std::move(read.fields), numbers_of(read.origin)};
 }
 
 std::string check_closed_surface(Mesh& mesh, const std::string& source) {

@@ -1,163 +1,221 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <unordered_map>
-
+// The sections of an MSH file: https://gmsh.info/doc/texinfo/gmsh.html#Gmsh-file-formats.
 #include "solver/error.hpp"
-#include "solver/mesh/lines.hpp"
-#include "solver/mesh/mesh_file.hpp"
+#include "solver/mesh/msh_elements.hpp"
+#include "solver/mesh/msh_records.hpp"
 
 namespace esfem {
 
 namespace {
 
-bool lower_dimensional(long type) {
-  for (long known : {1, 8, 15, 26, 27, 28, 62, 63, 64, 65, 66})
-    if (type == known) return true;
-  return false;
+/// Goes behind the line that closes a section.
+void close_section(MshRecords& records, const std::string& name) {
+  records.close();
+  const std::string end = "$End" + name;
+  Lines& lines = records.lines;
+  if (!lines.next()) lines.fail("the file ends here, " + end + " expected");
+  if (lines.word(0) == end) return;
+  // What stands there in a binary file need not be text.
+  lines.fail((records.is_binary() ? "something else" : "'" + lines.word(0) + "'") + " found, " + end +
+             " expected");
 }
 
-std::string type_name(long type) {
-  switch (type) {
-  case 3:
-    return "4-node quadrangle";
-  case 4:
-    return "4-node tetrahedron";
-  case 5:
-    return "8-node hexahedron";
-  case 6:
-    return "6-node prism";
-  case 7:
-    return "5-node pyramid";
-  case 10:
-    return "9-node quadrangle";
-  case 11:
-    return "10-node tetrahedron";
-  case 16:
-    return "8-node quadrangle";
-  case 20:
-    return "9-node triangle";
-  case 21:
-    return "10-node triangle";
-  case 22:
-    return "12-node triangle";
-  case 23:
-    return "15-node triangle";
-  default:
-    return "another element";
+void add_node(Msh& msh, MshRecords& records, long tag, int tag_line) {
+  if (!msh.node_of_tag.emplace(tag, int(msh.node_tags.size())).second) {
+    const std::string what = format("node %ld a second time, every node once expected", tag);
+    if (records.is_binary()) records.fail(what);
+    throw InputError(format("%s: line %d: %s", msh.file.c_str(), tag_line, what.c_str()));
   }
+  for (int i = 0; i < 3; ++i) msh.coordinates.push_back(records.coordinate());
+  msh.node_tags.push_back(tag);
+  if (!records.is_binary()) msh.node_lines.push_back(records.line());
 }
 
-/// The parts of an MSH file as they are read; elements by node tags.
-struct Msh {
-  std::vector<double> coordinates;
-  std::vector<long> corners;  ///< of all triangles, one after the other
-  std::unordered_map<long, int> node_of_tag;
-  MeshOrigin origin;
-  int nodes_per_triangle = 0;
-};
-
-void add_node(Msh& msh, const Lines& lines, long tag, int tag_line, int first_word) {
-  if (!msh.node_of_tag.emplace(tag, int(msh.origin.node_tags.size())).second)
-    throw InputError(format("%s: line %d: node %ld a second time, every node once expected",
-                            msh.origin.source.c_str(), tag_line, tag));
-  for (int i = 0; i < 3; ++i) msh.coordinates.push_back(lines.coordinate(first_word + i));
-  msh.origin.node_tags.push_back(tag);
-  msh.origin.node_lines.push_back(lines.number());
-}
-
-/// The element on the current line, whose nodes start at a word; points and lines are skipped.
-void add_element(Msh& msh, const Lines& lines, long type, int first_word) {
-  if (lower_dimensional(type)) return;
-  if (type != 2 && type != 9)
-    lines.fail(format("element type %ld (%s), a 3-node (2) or a 6-node (9) triangle expected", type,
-                      type_name(type).c_str()));
-  const int nodes = type == 2 ? 3 : 6;
-  if (msh.nodes_per_triangle != 0 && msh.nodes_per_triangle != nodes)
-    lines.fail(format("a %d-node triangle after %d-node triangles, one type expected", nodes,
-                      msh.nodes_per_triangle));
-  msh.nodes_per_triangle = nodes;
-  if (lines.size() != first_word + nodes)
-    lines.fail(format("%d words found, %d expected", lines.size(), first_word + nodes));
-  for (int i = 0; i < nodes; ++i) msh.corners.push_back(lines.integer(first_word + i, "node"));
-  msh.origin.element_tags.push_back(lines.integer(0, "element number"));
-  msh.origin.element_lines.push_back(lines.number());
-}
-
-void read_nodes_2(Msh& msh, Lines& lines) {
-  lines.expect("the number of nodes");
-  const long n = lines.count(0, "number of nodes");
+void read_nodes_2(Msh& msh, MshRecords& records) {
+  records.lines.expect("the number of nodes");
+  const long n = records.lines.count(0, "number of nodes");
+  records.open();
   for (long i = 0; i < n; ++i) {
-    lines.expect(format("node %ld of %ld", i + 1, n));
-    add_node(msh, lines, lines.integer(0, "node number"), lines.number(), 1);
+    records.next(format("node %ld of %ld", i + 1, n));
+    add_node(msh, records, records.integer("node number"), records.line());
+    records.end();
   }
 }
 
-void read_elements_2(Msh& msh, Lines& lines) {
-  lines.expect("the number of elements");
-  const long n = lines.count(0, "number of elements");
-  for (long i = 0; i < n; ++i) {
-    lines.expect(format("element %ld of %ld", i + 1, n));
-    const long tags = lines.count(2, "number of tags");
-    if (tags > lines.size()) lines.fail(format("%ld tags announced, %d words found", tags, lines.size()));
-    add_element(msh, lines, lines.integer(1, "element type"), 3 + int(tags));
-  }
-}
-
-void read_nodes_4(Msh& msh, Lines& lines) {
-  lines.expect("the numbers of blocks and nodes");
-  const long blocks = lines.count(0, "number of blocks"), total = lines.count(1, "number of nodes");
-  const std::size_t before = msh.origin.node_tags.size();
+void read_nodes_4(Msh& msh, MshRecords& records) {
+  records.open();
+  records.next("the numbers of blocks and nodes");
+  const long blocks = records.size_count("number of blocks"), total = records.size_count("number of nodes");
+  records.size("smallest node number");
+  records.size("largest node number");
+  const std::size_t before = msh.node_tags.size();
   for (long block = 0; block < blocks; ++block) {
-    lines.expect(format("the head of node block %ld of %ld", block + 1, blocks));
-    const long n = lines.count(3, "number of nodes in the block");
+    records.next(format("the head of node block %ld of %ld", block + 1, blocks));
+    const long dimension = records.integer_count("dimension");
+    records.integer("number of the entity");
+    const long parameters = records.integer("parametric") == 0 ? 0 : dimension;
+    const long n = records.size_count("number of nodes in the block");
+    records.end();
     std::vector<std::pair<long, int>> tags;
     for (long i = 0; i < n; ++i) {
-      lines.expect(format("the number of node %ld of %ld", i + 1, n));
-      if (lines.size() != 1) lines.fail(format("%d words found, one node number expected", lines.size()));
-      tags.emplace_back(lines.integer(0, "node number"), lines.number());
+      records.next(format("the number of node %ld of %ld", i + 1, n));
+      tags.emplace_back(records.size("node number"), records.line());
+      records.end();
     }
     for (const auto& [tag, line] : tags) {
-      lines.expect(format("the coordinates of node %ld", tag));
-      add_node(msh, lines, tag, line, 0);
+      records.next(format("the coordinates of node %ld", tag));
+      add_node(msh, records, tag, line);
+      for (long i = 0; i < parameters; ++i) records.real("parameter of the node");
+      records.end();
     }
   }
-  const long found = long(msh.origin.node_tags.size() - before);
-  if (found != total) lines.fail(format("%ld nodes in the blocks, %ld expected", found, total));
+  const long found = long(msh.node_tags.size() - before);
+  if (found != total) records.fail(format("%ld nodes in the blocks, %ld expected", found, total));
 }
 
-void read_elements_4(Msh& msh, Lines& lines) {
-  lines.expect("the numbers of blocks and elements");
-  const long blocks = lines.count(0, "number of blocks"), total = lines.count(1, "number of elements");
+/// Points and lines are known, but not kept.
+const MshElementType& readable_type(const MshRecords& records, long number) {
+  const MshElementType* type = msh_element_type(number);
+  if (type && (type->order > 0 || type->dimension < 2)) return *type;
+  records.fail(
+      format("element type %ld (%s), triangles with 3, 6, 10 or 15 nodes (types 2, 9, 21, 23), 4-node "
+             "quadrangles (3) or the boundary of volume elements of types 4, 5, 6, 7, 11 expected",
+             number, type ? type->name : "unknown"));
+}
+
+/// Reads the nodes of an element. node(): the next one of the record.
+template <class Node>
+void add_element(Msh& msh, const MshRecords& records, const MshElementType& type, long tag, long group,
+                 Node node) {
+  const std::size_t first = msh.element_nodes.size();
+  for (int i = 0; i < type.nodes; ++i) msh.element_nodes.push_back(node());
+  records.end();
+  if (type.dimension > 1)
+    msh.elements.push_back({&type, tag, records.line(), first, group});
+  else
+    msh.element_nodes.resize(first);
+}
+
+void read_elements_2(Msh& msh, MshRecords& records) {
+  records.lines.expect("the number of elements");
+  const long n = records.lines.count(0, "number of elements");
+  const auto node = [&] { return records.integer("node"); };
+  const auto group_of = [&](long tags) {
+    const long group = tags > 0 ? records.integer("tag") : 0;
+    for (long i = 1; i < tags; ++i) records.integer("tag");
+    return group;
+  };
+  records.open();
+  for (long i = 0; i < n;) {
+    records.next(format("element %ld of %ld", i + 1, n));
+    if (records.is_binary()) {
+      const MshElementType& type = readable_type(records, records.integer("element type"));
+      const long count = records.integer("number of elements"),
+                 tags = records.integer_count("number of tags");
+      if (count < 1 || count > n - i)
+        records.fail(format("%ld elements in a block, 1 to %ld expected", count, n - i));
+      for (const long end = i + count; i < end; ++i) {
+        const long tag = records.integer("element number");
+        const long group = group_of(tags);
+        add_element(msh, records, type, tag, group, node);
+      }
+    } else {
+      const long tag = records.integer("element number");
+      const MshElementType& type = readable_type(records, records.integer("element type"));
+      const long group = group_of(records.integer_count("number of tags"));
+      add_element(msh, records, type, tag, group, node);
+      ++i;
+    }
+  }
+}
+
+void read_elements_4(Msh& msh, MshRecords& records) {
+  records.open();
+  records.next("the numbers of blocks and elements");
+  const long blocks = records.size_count("number of blocks");
+  const long total = records.size_count("number of elements");
+  records.size("smallest element number");
+  records.size("largest element number");
   long found = 0;
   for (long block = 0; block < blocks; ++block) {
-    lines.expect(format("the head of element block %ld of %ld", block + 1, blocks));
-    const long type = lines.integer(2, "element type"), n = lines.count(3, "number of elements in the block");
+    records.next(format("the head of element block %ld of %ld", block + 1, blocks));
+    records.integer("dimension");
+    records.integer("number of the entity");
+    const MshElementType& type = readable_type(records, records.integer("element type"));
+    const long n = records.size_count("number of elements in the block");
+    records.end();
     for (long i = 0; i < n; ++i) {
-      lines.expect(format("element %ld of %ld", i + 1, n));
-      add_element(msh, lines, type, 1);
+      records.next(format("element %ld of %ld", i + 1, n));
+      const long tag = records.size("element number");
+      add_element(msh, records, type, tag, 0, [&] { return records.size("node"); });
     }
     found += n;
   }
-  if (found != total) lines.fail(format("%ld elements in the blocks, %ld expected", found, total));
+  if (found != total) records.fail(format("%ld elements in the blocks, %ld expected", found, total));
 }
 
-/// Goes behind the line that closes a section.
-void close_section(Lines& lines, const std::string& name) {
-  const std::string end = "$End" + name;
-  if (!lines.next()) lines.fail("the file ends here, " + end + " expected");
-  if (lines.word(0) != end) lines.fail("'" + lines.word(0) + "' found, " + end + " expected");
+/// The text of a line, without the quotes around it.
+std::string unquoted(const Lines& lines) {
+  std::string text = lines.word(0);
+  for (int i = 1; i < lines.size(); ++i) text += " " + lines.word(i);
+  const bool quoted = text.size() > 1 && text.front() == '"' && text.back() == '"';
+  return quoted ? text.substr(1, text.size() - 2) : text;
+}
+
+void read_node_data(Msh& msh, MshRecords& records) {
+  Lines& lines = records.lines;
+  const auto count_of = [&](const char* what) {
+    lines.expect("the " + std::string(what));
+    return lines.count(0, what);
+  };
+  MshNodeData data;
+  const long texts = count_of("number of string tags");
+  for (long i = 0; i < texts; ++i) {
+    lines.expect("a string tag");
+    if (i == 0) data.name = unquoted(lines);
+  }
+  const long reals = count_of("number of real tags");
+  for (long i = 0; i < reals; ++i) lines.expect("a real tag");
+  const long integers = count_of("number of integer tags");
+  if (integers < 3)
+    lines.fail(format("%ld integer tags, at least 3 expected: time step, components, nodes", integers));
+  std::vector<long> tags;
+  for (long i = 0; i < integers; ++i) tags.push_back(count_of("integer tag"));
+  data.components = int(std::min(tags[1], 9l));
+  if (tags[1] != 1 && tags[1] != 3 && tags[1] != 9)
+    lines.fail(format("%ld components a node, 1, 3 or 9 expected", tags[1]));
+  records.open();
+  for (long i = 0; i < tags[2]; ++i) {
+    records.next(format("the values of node %ld of %ld", i + 1, tags[2]));
+    data.nodes.push_back(records.integer("node number"));
+    for (int j = 0; j < data.components; ++j) data.values.push_back(records.real("value"));
+    records.end();
+  }
+  msh.node_data.push_back(std::move(data));
 }
 
 /// Reads the head of the file; returns the major version, 2 or 4.
-int read_format(Lines& lines) {
+int read_format(MshRecords& records) {
+  Lines& lines = records.lines;
   if (!lines.next() || lines.word(0) != "$MeshFormat") lines.fail("no Gmsh file, $MeshFormat expected");
   lines.expect("the format's version");
   const std::string version = lines.word(0);
-  if (lines.integer(1, "file type") != 0)
-    lines.fail("binary MSH file, ASCII expected (save it with Mesh.Binary = 0, or gmsh -save -bin 0)");
-  if (version != "2.2" && version != "4.1")
+  const bool is_2 = version == "2" || version == "2.0" || version == "2.1" || version == "2.2";
+  if (!is_2 && version != "4.1")
     lines.fail("MSH version " + version + ", 2.2 or 4.1 expected (save it with Mesh.MshFileVersion = 4.1)");
-  close_section(lines, "MeshFormat");
-  return version == "2.2" ? 2 : 4;
+  const long is_binary = lines.integer(1, "file type"), data_size = lines.integer(2, "data size");
+  if (is_binary != 0 && is_binary != 1) lines.fail(format("file type %ld, 0 or 1 expected", is_binary));
+  if (is_binary == 1) {
+    if (data_size != 8) lines.fail(format("data size %ld, 8 expected", data_size));
+    records.set_binary(false);
+    records.open();
+    const long one = records.integer("the number 1");
+    if (one != 1 && one != 1 << 24) records.fail(format("%ld found, the number 1 expected", one));
+    records.close();
+    records.set_binary(one != 1);
+  }
+  close_section(records, "MeshFormat");
+  return is_2 ? 2 : 4;
 }
 
 void skip_section(Lines& lines, const std::string& name) {
@@ -169,47 +227,34 @@ void skip_section(Lines& lines, const std::string& name) {
 }  // namespace
 
 MeshFile parse_msh(const std::string& file, const std::string& text) {
-  Lines lines(file, text);
+  MshRecords records(file, text);
+  Lines& lines = records.lines;
   Msh msh;
-  msh.origin.source = file;
-  const int version = read_format(lines);
+  msh.file = file;
+  const bool is_2 = read_format(records) == 2;
   bool has_nodes = false, has_elements = false;
   while (lines.next()) {
-    if (lines.word(0)[0] != '$')
-      lines.fail("'" + lines.word(0) + "' found, the head of a section ($...) expected");
-    const std::string section = lines.word(0).substr(1);
+    const std::string head = lines.word(0), section = head.substr(1);
+    if (head[0] != '$')
+      lines.fail((records.is_binary() ? "something else" : "'" + head + "'") +
+                 " found, the head of a section ($...) expected");
     if (section == "Nodes") {
-      version == 2 ? read_nodes_2(msh, lines) : read_nodes_4(msh, lines);
+      is_2 ? read_nodes_2(msh, records) : read_nodes_4(msh, records);
       has_nodes = true;
-      close_section(lines, section);
     } else if (section == "Elements") {
-      version == 2 ? read_elements_2(msh, lines) : read_elements_4(msh, lines);
+      is_2 ? read_elements_2(msh, records) : read_elements_4(msh, records);
       has_elements = true;
-      close_section(lines, section);
+    } else if (section == "NodeData") {
+      read_node_data(msh, records);
     } else {
       skip_section(lines, section);
+      continue;
     }
+    close_section(records, section);
   }
   if (!has_nodes) lines.fail("the file ends here, $Nodes expected");
   if (!has_elements) lines.fail("the file ends here, $Elements expected");
-  if (msh.corners.empty()) lines.fail("no triangle (element type 2 or 9) in the file, at least one expected");
-
-  MeshFile result;
-  result.mesh.degree = msh.nodes_per_triangle == 3 ? 1 : 2;
-  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
-  result.mesh.nodes = Eigen::Map<const Rows>(msh.coordinates.data(), msh.coordinates.size() / 3, 3);
-  const int columns = msh.nodes_per_triangle;
-  result.mesh.elements.resize(msh.corners.size() / columns, columns);
-  for (std::size_t i = 0; i < msh.corners.size(); ++i) {
-    const auto node = msh.node_of_tag.find(msh.corners[i]);
-    const int e = int(i) / columns;
-    if (node == msh.node_of_tag.end())
-      throw InputError(format("%s: %s: node %ld is not in $Nodes, a node of the file expected", file.c_str(),
-                              msh.origin.element(e).c_str(), msh.corners[i]));
-    result.mesh.elements(e, int(i) % columns) = node->second;
-  }
-  result.origin = std::move(msh.origin);
-  return result;
+  return msh_surface(std::move(msh));
 }
 
 }  // namespace esfem

@@ -7,8 +7,6 @@
 namespace esfem {
 
 void write_msh(const Mesh& mesh, const std::string& file) {
-  if (mesh.degree > 2)
-    throw InputError(format("%s: a mesh of degree %d, degree 1 or 2 expected", file.c_str(), mesh.degree));
   const int n = int(mesh.nodes.rows()), elements = int(mesh.elements.rows());
   std::ofstream out(file);
   out << "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
@@ -25,7 +23,8 @@ void write_msh(const Mesh& mesh, const std::string& file) {
     out << format("%.17g %.17g %.17g\n", mesh.nodes(i, 0), mesh.nodes(i, 1), mesh.nodes(i, 2));
   out << "$EndNodes\n";
 
-  const int gmsh_type = mesh.degree == 1 ? 2 : 9;
+  constexpr int types[] = {2, 9, 21, 23};  // triangles of degree 1, .., in the node order of fe/lagrange.hpp
+  const int gmsh_type = types[mesh.degree - 1];
   out << format("$Elements\n1 %d 1 %d\n2 1 %d %d\n", elements, elements, gmsh_type, elements);
   for (int e = 0; e < elements; ++e) {
     out << e + 1;
