@@ -16,6 +16,7 @@
 
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/evolve_config.hpp"
+#include "experiments/harness/evolve_start.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/library_environment.hpp"
 #include "experiments/harness/provenance.hpp"
@@ -35,14 +36,15 @@ namespace {
 using namespace esfem;
 using nlohmann::json;
 
-/// N x c nodal values as [[..], ..], or [..] for one component.
-json rows(const Field& field) {
+/// N x c numbers as [[..], ..], or [..] for one column.
+template <class Matrix>
+json rows(const Matrix& field) {
   json list = json::array();
   for (int j = 0; j < field.rows(); ++j) {
     if (field.cols() == 1) {
       list.push_back(field(j, 0));
     } else {
-      list.push_back(std::vector<double>(field.cols()));
+      list.push_back(std::vector<typename Matrix::Scalar>(field.cols()));
       for (int l = 0; l < field.cols(); ++l) list.back()[l] = field(j, l);
     }
   }
@@ -62,6 +64,8 @@ void write(const EvolveConfig& config, RunRecorder& recorder, const std::string&
     const RunRecorder::Surface& newest = recorder.newest();
     json nodal = {{"t", newest.t}, {"x", rows(newest.x)}, {"config", config_json}, {"provenance", origin}};
     for (const PointField& field : newest.fields) nodal[field.name] = rows(field.values);
+    nodal["elements"] = rows(config.mesh.elements);
+    if (!config.node_numbers.empty()) nodal["node_numbers"] = config.node_numbers;
     write_file(config.nodal, nodal.dump() + "\n");
   }
   recorder.finish();
@@ -143,9 +147,11 @@ void run_mean_curvature(const Run& run) {
   const std::optional<ExactEvolution> exact = exact_solution(config);
   ExactState<State> exact_state;
   if (exact) exact_state = [&](double t) { return exact_mean_curvature_state(*exact, x0, t); };
+  const std::optional<State> from_file = mean_curvature_state_in_file(config);
   run_flow(MeanCurvatureFlow(run.space, config.mean_curvature), run,
-           config.surface ? mean_curvature_state_on(*config.surface, x0)
-                          : discrete_mean_curvature_state(run.space, x0),
+           from_file        ? *from_file
+           : config.surface ? mean_curvature_state_on(*config.surface, x0)
+                            : discrete_mean_curvature_state(run.space, x0),
            exact_state);
 }
 
@@ -176,19 +182,23 @@ void run_growing_sphere(const Run& run) {
 
 void run_tumour_growth(const Run& run) {
   const EvolveConfig::Coupled& coupled = run.config.coupled;
-  const CoupledDiffusionState initial = tumour_growth_state(
-      run.space, run.config.mesh.nodes, coupled.kinetics, coupled.disturbance, coupled.seed);
+  std::optional<CoupledDiffusionState> initial = tumour_in_file(run.config, run.space);
+  if (!initial)
+    initial = tumour_growth_state(run.space, run.config.mesh.nodes, coupled.kinetics, coupled.disturbance,
+                                  coupled.seed);
   run_flow(CoupledDiffusion(run.space, TumourGrowth(coupled.kinetics), coupled.parameters, coupled.variant),
-           run, initial, {});
+           run, *initial, {});
 }
 
 void run_willmore(const Run& run) {
   const EvolveConfig& config = run.config;
   const Field& x0 = config.mesh.nodes;
-  const WillmoreStart start = config.surface ? willmore_start_on(run.space, *config.surface, x0,
-                                                                 config.willmore.law, config.willmore_theta)
-                                             : discrete_willmore_start(run.space, x0, config.willmore.law);
-  run_flow(WillmoreFlow(run.space, config.willmore, start.theta), run, start.state, {});
+  std::optional<WillmoreStart> start = willmore_start_in_file(config, run.space);
+  if (!start)
+    start = config.surface ? willmore_start_on(run.space, *config.surface, x0, config.willmore.law,
+                                               config.willmore_theta)
+                           : discrete_willmore_start(run.space, x0, config.willmore.law);
+  run_flow(WillmoreFlow(run.space, config.willmore, start->theta), run, start->state, {});
 }
 
 void run_manufactured_cahn_hilliard(const Run& run) {
@@ -216,8 +226,10 @@ void run_phase_separation(const Run& run) {
   const auto& [problem, epsilon, theta, initial, mean, disturbance, seed] = run.config.cahn_hilliard;
   const Field& x = run.config.mesh.nodes;
   const NodalMotion at_rest = [&](double) -> const Field& { return x; };
-  run_flow(LinearisedCahnHilliard(run.space, DoubleWell(), at_rest, epsilon, newton_tolerance), run,
-           disturbed_mixture(run.space, x, epsilon, mean, disturbance, seed), {});
+  std::optional<CahnHilliardState> start = mixture_in_file(run.config, run.space);
+  if (!start) start = disturbed_mixture(run.space, x, epsilon, mean, disturbance, seed);
+  run_flow(LinearisedCahnHilliard(run.space, DoubleWell(), at_rest, epsilon, newton_tolerance), run, *start,
+           {});
 }
 
 void run_cahn_hilliard(const Run& run) {
@@ -252,7 +264,8 @@ int evolve(const std::string& file, const json& origin) {
   RunRecorder recorder(space, plan,
                        fourth_order ? RunRecorder::of_flow_and_surface : RunRecorder::of_the_flow);
   std::optional<Checkpoint> checkpoint = checkpoint_of(config, config_json, recorder);
-  if (evolves_curvature(config) && !config.surface)
+  warn(start_remark(config));
+  if (evolves_curvature(config) && !config.surface && start_values(config, {"nu", "H"}).size() == 0)
     warn("no exact surface is given: nu and H at the start are computed on the discrete surface");
   try {
     run({config, space, recorder, checkpoint ? &*checkpoint : nullptr});

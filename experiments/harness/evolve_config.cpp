@@ -296,7 +296,11 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
       throw InputError(source + ": flow " + config.flow + " has no variants; expected no key variant");
   }
   const JsonReader mesh(reader.object("mesh"), source + ": mesh");
-  std::tie(config.mesh, config.mesh_remark) = evolve_mesh(mesh, degree, config.surface);
+  ReadMesh start = evolve_mesh(mesh, degree, config.surface);
+  config.mesh = std::move(start.mesh);
+  config.mesh_remark = start.remark;
+  config.fields = std::move(start.fields);
+  config.node_numbers = std::move(start.node_numbers);
   return config;
 }
 

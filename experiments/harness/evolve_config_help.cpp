@@ -25,8 +25,9 @@ std::string evolve_config_help() {
                | {"alpha": 1, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30, "delta": 0.4,
                   "disturbance": 0.01, "seed": 1},                                             tumour_growth
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
-   "mesh": {"file": "a.msh"}                 .msh, .off, .obj, .ply, .stl: closed, of one or several parts; seams, polygons
-                                              and orientation are mended with a remark; nodes are projected to the surface
+   "mesh": {"file": "a.msh"}                  .msh, .off, .obj, .ply, .stl, .vtu of evolve (plots/convert_mesh.py converts other
+                                              files): closed, of one or several parts; seams, polygons and orientation are
+                                              mended with a remark; nodes are projected to the surface, where one is given
          | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
    "degree": 2,                               1..4
@@ -54,8 +55,12 @@ std::string evolve_config_help() {
 Surfaces and their defaults:
 )" + named_surfaces_help() +
          R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u, or u1, u2;
-willmore, surface_diffusion: nu, H, V, z; cahn_hilliard: u, w) of the last step, one row a node
-in the order of the mesh; series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
+willmore, surface_diffusion: nu, H, V, z; cahn_hilliard: u, w) of the last step, one row a node; the nodes of the mesh
+file come first, in its order. elements are the rows of the nodes of each element, counted from 0 (corners, then the nodes
+of the edges 01, 12, 20, then inner ones); node_numbers, where they are not 1, 2, .., the file's own of its nodes.
+A run starts from the nodal values of its mesh file ($NodeData of .msh, point data of .vtu) that have these names: nu
+and H, with V and z (mean_curvature, willmore, surface_diffusion; without "surface"), u with w (phase_separation), u1 and
+u2 with v (tumour_growth), and says so; t starts at 0. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
 (degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
 willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and
 energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as

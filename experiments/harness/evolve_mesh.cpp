@@ -3,7 +3,6 @@
 
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
-#include "solver/mesh/read.hpp"
 
 namespace esfem {
 
@@ -22,29 +21,35 @@ Mesh subdivided(const Surface& surface, int subdivisions, const std::string& whe
                    "; expected edge_length or file");
 }
 
+/// The mesh of this degree with the nodal values on it, and the file's numbers of its first nodes.
+void raise_degree(ReadMesh& start, int degree) {
+  const Mesh given = std::move(start.mesh);
+  start.mesh = lagrange_mesh(given, degree);
+  for (PointField& field : start.fields) field.values = lagrange_values(given, field.values, start.mesh);
+  const Eigen::Index n = given.nodes.rows();
+  if (start.mesh.nodes.rows() < n || start.mesh.nodes.topRows(n) != given.nodes) start.node_numbers.clear();
+}
+
 }  // namespace
 
-std::tuple<Mesh, std::string> evolve_mesh(const JsonReader& description, int degree,
-                                          const std::optional<Surface>& surface) {
+ReadMesh evolve_mesh(const JsonReader& description, int degree, const std::optional<Surface>& surface) {
   const std::string key = description.only_key({"file", "edge_length", "subdivisions"});
   if (key != "file" && !surface) {
     throw InputError(description.where() + ": " + key +
                      " needs a \"surface\"; expected one, or a mesh with the key file");
   }
-  Mesh mesh;
-  std::string remark;
+  ReadMesh start;
   if (key == "file") {
-    ReadMesh found = read_mesh(description.text("file"));
-    mesh = std::move(found.mesh);
-    remark = found.remark;
+    start = read_mesh(description.text("file"));
   } else if (key == "edge_length") {
-    mesh = generate_mesh(*surface, description.number("edge_length"));
+    start.mesh = generate_mesh(*surface, description.number("edge_length"));
   } else {
-    mesh = subdivided(*surface, description.integer_within("subdivisions", 0, 0, 8), description.where());
+    start.mesh =
+        subdivided(*surface, description.integer_within("subdivisions", 0, 0, 8), description.where());
   }
-  mesh = lagrange_mesh(mesh, degree);
-  if (surface) project_nodes(mesh, *surface);
-  return {std::move(mesh), remark};
+  raise_degree(start, degree);
+  if (surface) project_nodes(start.mesh, *surface);
+  return start;
 }
 
 }  // namespace esfem

@@ -190,6 +190,12 @@ WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surfac
   return start_from(space, x, std::move(u), std::move(w), law);
 }
 
+WillmoreStart willmore_start_from(const SurfaceSpace& space, const Field& x, Field u, Field w, Law law) {
+  WillmoreStart start = start_from(space, x, std::move(u), std::move(w), law);
+  start.theta = {};
+  return start;
+}
+
 WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, Law law) {
   const MeanCurvatureFlow::State curvature = discrete_mean_curvature_state(space, x);
   Field u(x.rows(), 4);

@@ -85,6 +85,11 @@ struct WillmoreStart {
 WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x,
                                 WillmoreFlow::Variant::Law law, bool with_theta);
 
+/// Starting values with given nodes x, u = (H, nu) and w = (V, z); without w (no rows) it is that of (3.5b).
+/// theta is empty.
+WillmoreStart willmore_start_from(const SurfaceSpace& space, const Field& x, Field u, Field w,
+                                  WillmoreFlow::Variant::Law law);
+
 /// Starting values of a surface of which only the nodes x are known: nu and H as those of mean curvature flow
 /// (discrete_mean_curvature_state), V and z from (3.5b).
 WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x,

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/harness/evolve_start.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+/// What a run can start from: sets of nodal values, which the file must have as a whole.
+std::vector<Names> possible_starts(const EvolveConfig& config) {
+  using Coupled = EvolveConfig::Coupled;
+  if (config.flow == "coupled_diffusion" && config.coupled.problem == Coupled::tumour_growth)
+    return {{"u1", "u2"}, {"v"}};
+  if (config.flow == "cahn_hilliard" && config.cahn_hilliard.problem == config.cahn_hilliard.phase_separation)
+    return {{"u"}, {"u", "w"}};
+  if (config.surface) return {};
+  if (config.flow == "mean_curvature") return {{"nu", "H"}};
+  if (config.flow == "willmore" || config.flow == "surface_diffusion")
+    return {{"nu", "H"}, {"nu", "H", "V", "z"}};
+  return {};
+}
+
+const PointField* field_named(const EvolveConfig& config, const std::string& name) {
+  const auto found = std::find_if(config.fields.begin(), config.fields.end(),
+                                  [&](const PointField& field) { return field.name == name; });
+  return found == config.fields.end() ? nullptr : &*found;
+}
+
+bool has_all(const EvolveConfig& config, const Names& names) {
+  return std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return field_named(config, name); });
+}
+
+/// The node under the number that the mesh file has for it.
+std::string node_named(const EvolveConfig& config, int i) {
+  if (i < int(config.node_numbers.size())) return format("node %ld", config.node_numbers[i]);
+  return format("node %d (counted from 1)", i + 1);
+}
+
+void check_values(const EvolveConfig& config, const PointField& field) {
+  const bool is_vector = field.name == "nu" || field.name == "z" || field.name == "v";
+  if (field.values.cols() != (is_vector ? 3 : 1))
+    throw InputError(format("mesh: %s of the file has %d components, %d expected", field.name.c_str(),
+                            int(field.values.cols()), is_vector ? 3 : 1));
+  for (int i = 0; i < field.values.rows(); ++i)
+    if (!field.values.row(i).allFinite())
+      throw InputError("mesh: " + field.name + " of the file has no finite value at " +
+                       node_named(config, i) + ", one at each node expected");
+}
+
+/// Normals of the file have about unit length and point outward, as those of the elements do.
+void check_normals(const EvolveConfig& config, const Field& nu) {
+  const Mesh& mesh = config.mesh;
+  for (int i = 0; i < nu.rows(); ++i)
+    if (const double length = nu.row(i).norm(); !(length > 0.5 && length < 2))
+      throw InputError(format("mesh: nu of the file has length %g at ", length) + node_named(config, i) +
+                       ", 1 expected");
+  double along = 0, area = 0;
+  for (const auto& element : mesh.elements.rowwise()) {
+    const Vec3 a = mesh.nodes.row(element[0]), b = mesh.nodes.row(element[1]), c = mesh.nodes.row(element[2]);
+    const Vec3 normal = (b - a).cross(c - a);
+    area += normal.norm();
+    for (int i = 0; i < 3; ++i) along += normal.dot(Vec3(nu.row(element[i]))) / 3;
+  }
+  if (!(along > 0.5 * area))
+    throw InputError(
+        format("mesh: nu of the file is no outward normal, nu . n is %.3g in the mean over the "
+               "surface, about 1 expected",
+               along / area));
+}
+
+}  // namespace
+
+Field start_values(const EvolveConfig& config, const Names& names) {
+  const std::vector<Names> possible = possible_starts(config);
+  if (std::find(possible.begin(), possible.end(), names) == possible.end() || !has_all(config, names))
+    return {};
+  Field values(config.mesh.nodes.rows(), 0);
+  for (const std::string& name : names) {
+    const PointField& field = *field_named(config, name);
+    check_values(config, field);
+    if (name == "nu") check_normals(config, field.values);
+    Field both(values.rows(), values.cols() + field.values.cols());
+    both << values, field.values;
+    values = std::move(both);
+  }
+  return values;
+}
+
+std::optional<MeanCurvatureFlow::State> mean_curvature_state_in_file(const EvolveConfig& config) {
+  const Field nu_H = start_values(config, {"nu", "H"});
+  if (nu_H.size() == 0) return {};
+  return mean_curvature_state(0, config.mesh.nodes, nu_H.leftCols(3), nu_H.col(3));
+}
+
+std::optional<WillmoreStart> willmore_start_in_file(const EvolveConfig& config, const SurfaceSpace& space) {
+  const Field nu_H = start_values(config, {"nu", "H"}), all = start_values(config, {"nu", "H", "V", "z"});
+  if (nu_H.size() == 0) return {};
+  Field u(nu_H.rows(), 4);
+  u << nu_H.col(3), nu_H.leftCols(3);
+  const Field w = all.size() > 0 ? Field(all.rightCols(4)) : Field();
+  return willmore_start_from(space, config.mesh.nodes, std::move(u), w, config.willmore.law);
+}
+
+std::optional<CahnHilliardState> mixture_in_file(const EvolveConfig& config, const SurfaceSpace& space) {
+  const Field u = start_values(config, {"u"}), u_w = start_values(config, {"u", "w"});
+  if (u.size() == 0) return {};
+  const Field& x = config.mesh.nodes;
+  return u_w.size() > 0 ? cahn_hilliard_state(space, 0, x, u, u_w.col(1))
+                        : cahn_hilliard_start(space, DoubleWell(), config.cahn_hilliard.epsilon, 0, x, u);
+}
+
+std::optional<CoupledDiffusionState> tumour_in_file(const EvolveConfig& config, const SurfaceSpace& space) {
+  const Field u = start_values(config, {"u1", "u2"}), v = start_values(config, {"v"});
+  if (u.size() == 0) return {};
+  const Field& x = config.mesh.nodes;
+  return coupled_diffusion_state(space, 0, x, v.size() > 0 ? v : Field(Field::Zero(x.rows(), 3)), u);
+}
+
+std::string start_remark(const EvolveConfig& config) {
+  std::map<std::string, bool> used;
+  for (const PointField& field : config.fields) used[field.name] = false;
+  for (const Names& names : possible_starts(config))
+    if (has_all(config, names))
+      for (const std::string& name : names) used[name] = true;
+  std::string taken, ignored;
+  for (const auto& [name, is_used] : used) {
+    std::string& list = is_used ? taken : ignored;
+    list += (list.empty() ? "" : ", ") + name;
+  }
+  if (!taken.empty()) taken += " from the mesh file";
+  if (!ignored.empty()) ignored += " of the mesh file not used";
+  return taken + (taken.empty() || ignored.empty() ? "" : "; ") + ignored;
+}
+
+}  // namespace esfem

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "solver/analysis/table.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+
+/// The program evolve as a user meets it: configurations in, files, messages and exit codes out.
+class EvolveProgram : public testing::Test {
+ protected:
+  const std::filesystem::path folder =
+      std::filesystem::path(ESFEM_BINARY_DIR) / "test_evolve" / std::to_string(getpid());
+  const std::string nodal = (folder / "nodal.json").string(), series = (folder / "series.json").string();
+  std::string message;  ///< what the last run said on standard error
+
+  void SetUp() override { std::filesystem::create_directories(folder); }
+  void TearDown() override { std::filesystem::remove_all(folder); }
+
+  nlohmann::json config(const nlohmann::json& changes = nlohmann::json::object()) const {
+    nlohmann::json result = {{"flow", "mean_curvature"},
+                             {"surface", {{"name", "sphere"}, {"radius", 1}}},
+                             {"mesh", {{"subdivisions", 1}}},
+                             {"bdf", 2},
+                             {"tau", 0.01},
+                             {"steps", 4},
+                             {"output", {{"nodal", nodal}, {"series", series}}}};
+    result.merge_patch(changes);
+    return result;
+  }
+
+  int run(const nlohmann::json& configuration) {
+    const std::string file = (folder / "config.json").string(), errors = (folder / "errors.txt").string();
+    write_file(file, configuration.dump());
+    const std::string command = std::string(ESFEM_BINARY_DIR) + "/bin/evolve " + file + " 2>" + errors;
+    const int status = std::system(command.c_str());
+    std::ifstream stream(errors);
+    message.assign(std::istreambuf_iterator<char>(stream), {});
+    return WEXITSTATUS(status);
+  }
+};
+
+}  // namespace esfem
