@@ -16,7 +16,8 @@ std::string evolve_config_help() {
             | "ellipsoid"                     cahn_hilliard: exp(-6t) x1 x2 on an ellipsoid that starts as the unit sphere
                                               (default)
             | "phase_separation"              cahn_hilliard: a disturbed mixture on any surface, at rest; implicit, for
-                                              steps of any size
+                                              steps of any size: where the energy would rise, a step is replaced by
+                                              smaller ones of backward Euler
             | "tumour_growth",                activator and substrate (Schnakenberg) on any surface, from a disturbed
                                               steady state
    "parameters": {"alpha": 1, "beta": 1}      growing_sphere

@@ -93,7 +93,12 @@ Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u,
 CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,
                                     double disturbance, unsigned seed) {
   std::mt19937 engine(seed);
-  const Field u = mean + disturbance * plane_waves(x, engine).array();
+  const Field waves = plane_waves(x, engine);
+  SymmetricMatrix M = space.matrix(), A = space.matrix();
+  space.assemble(x, M, A);
+  const Field M_one = M * Field::Ones(x.rows(), 1);
+  const double mean_of_waves = waves.cwiseProduct(M_one).sum() / M_one.sum();
+  const Field u = mean + disturbance * (waves.array() - mean_of_waves);
   return cahn_hilliard_start(space, DoubleWell(), epsilon, 0, x, u);
 }
 

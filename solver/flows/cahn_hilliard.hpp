@@ -147,8 +147,8 @@ struct DoubleWell {
   void b(double, const Field&, Field&) const {}
 };
 
-/// A disturbed mixture on nodes x, u = mean + disturbance times plane waves, and w from the second equation;
-/// t = 0.
+/// A disturbed mixture on nodes x, u = mean + disturbance times plane waves less their mean over Gamma_h[x],
+/// so that int u is `mean` times the area, and w from the second equation; t = 0.
 CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,
                                     double disturbance, unsigned seed);
 

@@ -205,7 +205,7 @@ TEST_F(Evolve, SeparatesPhasesOnAnySurfaceAtRest) {
   EXPECT_TRUE(std::is_sorted(energy.rbegin(), energy.rend()));
   EXPECT_LT(energy.back(), 0.5 * energy.front());
   EXPECT_NEAR(mass.back(), mass.front(), 1e-11);
-  EXPECT_NEAR(mass.back() / area.back(), 0.1, 0.05);
+  EXPECT_NEAR(mass.back() / area.back(), 0.1, 1e-12);
 }
 
 TEST_F(Evolve, ThetaNeedsASurface) {
