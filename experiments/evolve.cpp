@@ -62,7 +62,8 @@ void write(const EvolveConfig& config, RunRecorder& recorder, const std::string&
   }
   if (!config.nodal.empty()) {
     const RunRecorder::Surface& newest = recorder.newest();
-    json nodal = {{"t", newest.t}, {"x", rows(newest.x)}, {"config", config_json}, {"provenance", origin}};
+    const Field x = newest.x.rowwise() + config.origin.transpose();
+    json nodal = {{"t", newest.t}, {"x", rows(x)}, {"config", config_json}, {"provenance", origin}};
     for (const PointField& field : newest.fields) nodal[field.name] = rows(field.values);
     nodal["elements"] = rows(config.mesh.elements);
     if (!config.node_numbers.empty()) nodal["node_numbers"] = config.node_numbers;
@@ -79,6 +80,18 @@ template <class State, class = void>
 constexpr Field State::*controlled = &State::x;
 template <class State>
 constexpr Field State::*controlled<State, std::void_t<decltype(&State::u)>> = &State::u;
+
+/// Their units on a surface with length L: L for positions, 1/L for H, none for normals and u.
+template <class State>
+std::vector<double> units_of_controlled(const State&, double L) {
+  return controlled<State> == &State::x ? std::vector<double>(3, L) : std::vector<double>();
+}
+std::vector<double> units_of_controlled(const MeanCurvatureFlow::State&, double L) {
+  return {1, 1, 1, 1 / L};
+}
+std::vector<double> units_of_controlled(const WillmoreFlow::State&, double L) {
+  return {1 / L, 1, 1, 1};
+}
 
 /// What the numbers of a run depend on beside its initial state and time grid.
 std::optional<Checkpoint> checkpoint_of(const EvolveConfig& config, const json& config_json,
@@ -123,10 +136,13 @@ void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactStat
     if (terminal)
       std::fprintf(stderr, "\rstep %d, t = %g of %g%s", n, state.t, end, state.t >= end ? "\n" : "");
   };
-  if (config.adaptive)
-    integrate_adaptive(flow, *config.adaptive, initial, controlled<State>, observe, run.checkpoint);
-  else
+  if (config.adaptive) {
+    AdaptiveGrid adaptive = *config.adaptive;
+    adaptive.units = units_of_controlled(initial, run.space.length());
+    integrate_adaptive(flow, adaptive, initial, controlled<State>, observe, run.checkpoint);
+  } else {
     integrate(flow, grid, initial, exact, observe, run.checkpoint);
+  }
   if (run.checkpoint) warn(run.checkpoint->remark());
 }
 
@@ -185,7 +201,7 @@ void run_tumour_growth(const Run& run) {
   std::optional<CoupledDiffusionState> initial = tumour_in_file(run.config, run.space);
   if (!initial)
     initial = tumour_growth_state(run.space, run.config.mesh.nodes, coupled.kinetics, coupled.disturbance,
-                                  coupled.seed);
+                                  coupled.seed, run.config.disturbance_origin);
   run_flow(CoupledDiffusion(run.space, TumourGrowth(coupled.kinetics), coupled.parameters, coupled.variant),
            run, *initial, {});
 }
@@ -222,7 +238,8 @@ void run_phase_separation(const Run& run) {
   const auto& [problem, epsilon, theta, initial, mean, disturbance, seed] = run.config.cahn_hilliard;
   const Field& x = run.config.mesh.nodes;
   std::optional<CahnHilliardState> start = mixture_in_file(run.config, run.space);
-  if (!start) start = disturbed_mixture(run.space, x, epsilon, mean, disturbance, seed);
+  if (!start)
+    start = disturbed_mixture(run.space, x, epsilon, mean, disturbance, seed, run.config.disturbance_origin);
   PhaseSeparation flow(run.space, x, epsilon);
   run_flow(flow, run, *start, {});
   if (flow.replaced_steps() > 0)
@@ -259,6 +276,7 @@ int evolve(const std::string& file, const json& origin) {
   const bool fourth_order = config.flow == "willmore" || config.flow == "surface_diffusion";
   SnapshotPlan plan = config.snapshots;
   plan.run = {config.flow, config_json.dump()};
+  plan.origin = config.origin;
   RunRecorder recorder(space, plan,
                        fourth_order ? RunRecorder::of_flow_and_surface : RunRecorder::of_the_flow);
   std::optional<Checkpoint> checkpoint = checkpoint_of(config, config_json, recorder);

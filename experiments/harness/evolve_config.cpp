@@ -4,6 +4,7 @@
 #include <map>
 
 #include "experiments/harness/evolve_mesh.hpp"
+#include "experiments/harness/evolve_units.hpp"
 #include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
@@ -40,7 +41,11 @@ AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
   grid.tolerance = positive_or(reader, "tolerance", grid.tolerance);
   grid.first_step = positive_or(reader, "first_step", grid.first_step);
   if (reader.has("largest_step")) grid.largest_step = positive_or(reader, "largest_step", 0);
-  check_adaptive_grid(grid);
+  if (reader.has("first_step") && grid.end_time > 0 && grid.first_step >= grid.end_time)
+    throw InputError(
+        format("%s: found first_step = %g, which is not controlled, and end_time = %g; expected a "
+               "first step that is smaller",
+               reader.where().c_str(), grid.first_step, grid.end_time));
   return grid;
 }
 
@@ -301,6 +306,8 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   config.mesh_remark = start.remark;
   config.fields = std::move(start.fields);
   config.node_numbers = std::move(start.node_numbers);
+  move_near_origin(config);
+  scale_defaults(reader, config);
   return config;
 }
 

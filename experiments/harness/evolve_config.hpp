@@ -21,11 +21,13 @@ namespace esfem {
 struct EvolveConfig {
   std::string flow;  ///< mean_curvature | dziuk | bgn | coupled_diffusion | willmore | surface_diffusion |
                      ///< cahn_hilliard
-  std::optional<Surface> surface;  ///< the exact initial surface, where one is given
-  Mesh mesh;                       ///< P_k; on the surface, where there is one
-  std::string mesh_remark;         ///< what the reader of the mesh changed; empty: nothing
-  std::vector<PointField> fields;  ///< nodal values of the mesh file; nan where it has none
-  std::vector<long> node_numbers;  ///< the file's own, of the first nodes; empty: 1, 2, ..
+  std::optional<Surface> surface;          ///< the exact initial surface, where one is given
+  Mesh mesh;                               ///< P_k; on the surface, where there is one
+  Vec3 origin = Vec3::Zero();              ///< of the mesh's coordinates in those of its file
+  Vec3 disturbance_origin = Vec3::Zero();  ///< of the waves that disturb initial values
+  std::string mesh_remark;                 ///< what the reader of the mesh changed; empty: nothing
+  std::vector<PointField> fields;          ///< nodal values of the mesh file; nan where it has none
+  std::vector<long> node_numbers;          ///< the file's own, of the first nodes; empty: 1, 2, ..
   TimeGrid grid;
   bool start_given = false;              ///< whether grid.start comes from the file
   std::optional<AdaptiveGrid> adaptive;  ///< instead of `grid`, where the file asks for it

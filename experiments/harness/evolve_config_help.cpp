@@ -22,8 +22,8 @@ std::string evolve_config_help() {
                                               steady state
    "parameters": {"alpha": 1, "beta": 1}      growing_sphere
                | {"epsilon": 0.5}             ellipsoid
-               | {"epsilon": 0.5, "mean": 0, "disturbance": 0.1, "seed": 1},                   phase_separation
-               | {"alpha": 1, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30, "delta": 0.4,
+               | {"epsilon": 0.5 L, "mean": 0, "disturbance": 0.1, "seed": 1},                 phase_separation
+               | {"alpha": 1 L^2, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30/L^2, "delta": 0.4/L,
                   "disturbance": 0.01, "seed": 1},                                             tumour_growth
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
    "mesh": {"file": "a.msh"}                  .msh, .off, .obj, .ply, .stl, .vtu of evolve (plots/convert_mesh.py converts other
@@ -36,8 +36,10 @@ std::string evolve_config_help() {
    "tau": 0.05,                               step size (no default)
    "steps": 0,                                end time = steps tau; 0 writes the initial surface
    "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
-                "tolerance": 1e-3,            follow the solution; of u (mean_curvature, coupled_diffusion, willmore,
-                "first_step": 1e-6,           surface_diffusion, phase_separation) or x, root mean square
+                "tolerance": 1e-3,            follow the solution; root mean square of x/L (dziuk, bgn), nu and L H
+                                              (mean_curvature, willmore, surface_diffusion) or u (coupled_diffusion,
+                                              phase_separation)
+                "first_step": 1e-6 T,         not controlled, so smaller than end_time (default: at most a tenth)
                 "largest_step": 0.01},        default: no bound
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere, angenent_torus), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
@@ -53,6 +55,11 @@ std::string evolve_config_help() {
               "checkpoint": "run.checkpoint", the same command goes on from it when the run was stopped
               "every": 10,                    at every 10th step (default 0: none of these)
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
+Units: what is given has those of the data. Defaults and tolerances are relative to L, the power of ten next to
+sqrt(area/(4 pi)) of the initial surface: 1 for sizes of 0.32 to 3.2. Times have the unit T = L^2; L^3 for phase_separation
+(mobility 1, epsilon a length), L^4 for willmore and surface_diffusion. tumour_growth: alpha L^2, gamma 1/L^2, delta 1/L,
+epsilon and D none (the activator's diffusion is 1). The waves of a disturbance have wave numbers up to 4/L, in
+phase_separation the mean 0, and phases about the origin, on a mesh without "surface" about its centroid.
 Surfaces and their defaults:
 )" + named_surfaces_help() +
          R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u, or u1, u2;

@@ -56,7 +56,8 @@ void RunRecorder::write_newest() {
   if (!find(fields, "nu")) fields.push_back({"nu", curvature_.nu()});
   if (!find(fields, "H")) fields.push_back({"H", curvature_.H()});
   fields.push_back({"kappa", curvature_.kappa()});
-  snapshots_.push_back({newest_.t, collection_->add(newest_.step, newest_.t, newest_.x, fields)});
+  snapshots_.push_back({newest_.t, collection_->add(newest_.step, newest_.t,
+                                                    newest_.x.rowwise() + plan_.origin.transpose(), fields)});
 }
 
 void RunRecorder::finish() {

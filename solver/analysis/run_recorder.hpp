@@ -18,7 +18,8 @@ struct SnapshotPlan {
   std::string pvd;  ///< the collection, "run.pvd"; empty: no snapshots are wanted
   std::vector<double> times;
   int every = 0;
-  RunLabel run = {};  ///< what each snapshot says of the run
+  RunLabel run = {};           ///< what each snapshot says of the run
+  Vec3 origin = Vec3::Zero();  ///< is added to the positions of snapshots
 };
 
 /// Keeps what is seen of a run on one mesh: a time series, snapshots, and the newest surface. A step that

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/assembly/surface_space.hpp"
 
+#include "solver/assembly/size.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
@@ -61,6 +62,7 @@ SurfaceSpace::SurfaceSpace(const Mesh& mesh, const Quadrature& rule)
     : degree_(mesh.degree),
       elements_(mesh.elements),
       rule_(rule),
+      length_(characteristic_length(mesh)),
       pattern_(std::make_shared<SparsityPattern>(
           element_pattern(mesh.elements, static_cast<int>(mesh.nodes.rows())))),
       batches_(mesh.elements, mesh.degree, rule) {
@@ -185,13 +187,16 @@ double SurfaceSpace::area(const Field& x) const {
 }
 
 double SurfaceSpace::volume(const Field& x) const {
-  return integrate(x,
-                   [this](const Batch& batch, const ElementBatches::Shape* shape, const BatchPoint& point) {
-                     Pack sum = {};
-                     for (int a = 0; a < batches_.nodes(); ++a)
-                       sum += shape[a].value * dot(batch.x[a], point.normal);
-                     return sum / 3.0;
-                   });
+  const Vec3 centre = far_centre(x, length_);
+  return integrate(x, [&](const Batch& batch, const ElementBatches::Shape* shape, const BatchPoint& point) {
+    Pack sum = {};
+    for (int a = 0; a < batches_.nodes(); ++a) {
+      Pack from_centre[3];
+      for (int i = 0; i < 3; ++i) from_centre[i] = batch.x[a][i] - centre[i];
+      sum += shape[a].value * dot(from_centre, point.normal);
+    }
+    return sum / 3.0;
+  });
 }
 
 }  // namespace esfem

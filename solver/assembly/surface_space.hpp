@@ -47,6 +47,8 @@ class SurfaceSpace {
   const Connectivity& elements() const { return elements_; }
   const Quadrature& quadrature() const { return rule_; }
   std::shared_ptr<const SparsityPattern> pattern() const { return pattern_; }
+  /// The characteristic_length of the mesh that the space was made for; exactly 1 for surfaces of size one.
+  double length() const { return length_; }
   /// A zero matrix on the pattern.
   SymmetricMatrix matrix() const;
 
@@ -66,7 +68,7 @@ class SurfaceSpace {
 
   /// Surface area, integral of 1.
   double area(const Field& x) const;
-  /// Enclosed volume, one third of the integral of x . nu.
+  /// Enclosed volume, one third of the integral of (x - centre) . nu, about the far_centre of x.
   double volume(const Field& x) const;
 
  private:
@@ -90,6 +92,7 @@ class SurfaceSpace {
   int degree_;
   Connectivity elements_;
   Quadrature rule_;
+  double length_;
   std::shared_ptr<const SparsityPattern> pattern_;
   ElementBatches batches_;
   int off_diagonals_, entries_;     ///< number in the lower triangle of an element matrix

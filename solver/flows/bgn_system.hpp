@@ -31,6 +31,7 @@ class BgnSystem {
   const SymmetricMatrix& A() const { return A_; }
 
  private:
+  double length_;
   SymmetricMatrix M_, A_, N_[3];
   NodeBlockLu lu_;
   Field Ax_;

@@ -91,9 +91,9 @@ Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u,
 }
 
 CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,
-                                    double disturbance, unsigned seed) {
+                                    double disturbance, unsigned seed, const Vec3& origin) {
   std::mt19937 engine(seed);
-  const Field waves = plane_waves(x, engine);
+  const Field waves = plane_waves(x, origin, space.length(), engine);
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
   const Field M_one = M * Field::Ones(x.rows(), 1);

@@ -147,10 +147,11 @@ struct DoubleWell {
   void b(double, const Field&, Field&) const {}
 };
 
-/// A disturbed mixture on nodes x, u = mean + disturbance times plane waves less their mean over Gamma_h[x],
-/// so that int u is `mean` times the area, and w from the second equation; t = 0.
+/// A disturbed mixture on nodes x, u = mean + disturbance times plane waves (in units of the space's length
+/// from `origin`) less their mean over Gamma_h[x], so that int u is `mean` times the area, and w from the
+/// second equation; t = 0.
 CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,
-                                    double disturbance, unsigned seed);
+                                    double disturbance, unsigned seed, const Vec3& origin = Vec3::Zero());
 
 /// Ginzburg-Landau energy, integral of epsilon/2 |grad u|² + F(u)/epsilon over Gamma_h[x] (bk22 (2.3) with
 /// epsilon).

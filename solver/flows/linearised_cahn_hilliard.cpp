@@ -15,8 +15,8 @@ LinearisedCahnHilliardScheme::LinearisedCahnHilliardScheme(const SurfaceSpace& s
       epsilon_(epsilon),
       M_(space.matrix()),
       A_(space.matrix()),
-      aM_(space.matrix()),
-      aB_(space.matrix()),
+      kappa_M_(space.matrix()),
+      B_(space.matrix()),
       block_(space.pattern()) {
   if (!(epsilon > 0) || !std::isfinite(epsilon))
     throw InputError(format("epsilon: found %g, expected a positive number", epsilon));
@@ -30,16 +30,19 @@ void LinearisedCahnHilliardScheme::prepare(const History<State>& history, int q,
 
 void LinearisedCahnHilliardScheme::advance(const History<State>& history, int q, double tau,
                                            const Field& load, const SymmetricMatrix& W, State& next) {
-  const double a = history.delta(q)[0] / tau;
-  aM_.values = a * M_.values;
-  aB_.values = -a * (epsilon_ * A_.values + W.values / epsilon_);
+  // With kappa² = delta_0/(tau epsilon), kappa epsilon u and w have one unit, and both diagonal blocks one
+  // size.
+  const double kappa = std::sqrt(history.delta(q)[0] / (tau * epsilon_));
+  kappa_M_.values = kappa * M_.values;
+  B_.values = -A_.values - W.values / (epsilon_ * epsilon_);
   // w first: A and B have good pivots on the diagonal, for small steps and for large ones.
-  block_.factorise(A_, aM_, aB_);
+  block_.factorise(A_, kappa_M_, B_);
   history.bdf_sum(q, &State::Mu, Mu_sum_);
   W.multiply(next.u, Wu_);
   next.w = Mu_sum_ / -tau;
-  next.u = a / epsilon_ * (load - Wu_);
+  next.u = kappa / epsilon_ * (load - Wu_);
   block_.solve(next.w, next.u);
+  next.u /= kappa * epsilon_;
   M_.multiply(next.u, next.Mu);
 }
 

@@ -30,7 +30,8 @@ class LinearisedCahnHilliardScheme {
   const SurfaceSpace& space_;
   NodalMotion motion_;
   double epsilon_;
-  SymmetricMatrix M_, A_, aM_, aB_;  ///< a = delta_0/tau, B = -(epsilon A + W/epsilon)
+  SymmetricMatrix M_, A_;
+  SymmetricMatrix kappa_M_, B_;  ///< kappa² = delta_0/(tau epsilon), B = -(A + W/epsilon²)
   SymmetricBlockSolver block_;
   Field Mu_sum_, Wu_;
 };
@@ -48,8 +49,8 @@ class LinearisedCahnHilliardScheme {
 /// whatever the step size. The system of a step,
 ///   delta_0/tau M u + A w = - 1/tau sum_{j>=1} delta_j M(t_{n-j}) u^{n-j},
 ///   -(epsilon A + W/epsilon) u + M w = (load of g(u~) - W u~)/epsilon,    W = int g'(u~) phi_i phi_j,
-/// is symmetric when the second line is multiplied by delta_0/tau, but W keeps it from having the complex
-/// form of bk22 (8.3).
+/// is symmetric for the unknowns kappa epsilon u and w, kappa² = delta_0/(tau epsilon), when the second line
+/// is multiplied by kappa, but W keeps it from having the complex form of bk22 (8.3).
 ///
 /// A Problem says what g is:
 ///   struct Problem {

@@ -15,7 +15,7 @@ Field interpolated_velocity(const U& u) {
 
 /// The loads g (columns 0-2) and f (columns 3-6) of §3.3, with the stabilising term of §14 in f_1.
 struct MeanCurvatureLoads {
-  double alpha;
+  double alpha, mass_factor;
 
   void operator()(const PointData<4>& p, Integrand<7, 3>& load) const {
     const Pack H = p.u[3];
@@ -24,7 +24,7 @@ struct MeanCurvatureLoads {
       for (int i = 0; i < 3; ++i) weingarten_squared += p.grad[l][i] * p.grad[l][i];
     }
     for (int l = 0; l < 3; ++l) {
-      load.value[l] = -H * p.u[l];
+      load.value[l] = -mass_factor * H * p.u[l];
       for (int i = 0; i < 3; ++i) load.flux[l][i] = -(H * p.grad[l][i] + p.u[l] * p.grad[3][i]);
       load.value[3 + l] = weingarten_squared * p.u[l] - alpha * (p.u[l] - p.normal[l]);
     }
@@ -35,7 +35,12 @@ struct MeanCurvatureLoads {
 }  // namespace
 
 MeanCurvatureFlow::MeanCurvatureFlow(const SurfaceSpace& space, Variant variant)
-    : space_(space), variant_(variant), M_(space.matrix()), A_(space.matrix()), cholesky_(space.pattern()) {}
+    : space_(space),
+      variant_(variant),
+      mass_factor_(1 / (space.length() * space.length())),
+      M_(space.matrix()),
+      A_(space.matrix()),
+      cholesky_(space.pattern()) {}
 
 void MeanCurvatureFlow::velocity(Field& v) {
   if (variant_.velocity == Variant::interpolation) {
@@ -43,7 +48,7 @@ void MeanCurvatureFlow::velocity(Field& v) {
     return;
   }
   v = loads_.leftCols(3);
-  cholesky_.factorise(1.0, M_, 1.0, A_);
+  cholesky_.factorise(mass_factor_, M_, 1.0, A_);
   cholesky_.solve(v);
 }
 
@@ -55,7 +60,8 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   history.extrapolate(q, &State::u, u_tilde_);
 
   assemble_regular(space_, x_tilde_, M_, A_);
-  space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, MeanCurvatureLoads{variant_.stabilise}, loads_);
+  space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, MeanCurvatureLoads{variant_.stabilise, mass_factor_},
+                                loads_);
 
   // (5.1), first line: K(x̃) v = g(x̃, ũ)
   velocity(next.v);

@@ -16,8 +16,9 @@ namespace esfem {
 class MeanCurvatureFlow {
  public:
   struct Variant {
-    /// ritz: v_h is the Ritz projection (3.1a) of -H_h nu_h; interpolation: its nodal interpolation (kll21
-    /// Remark 3.1).
+    /// ritz: v_h is the Ritz projection (3.1a) of -H_h nu_h, with K = M/L² + A, L the length of the space, so
+    /// that it does not depend on units (the papers have L = 1); interpolation: its nodal interpolation
+    /// (kll21 Remark 3.1).
     enum Velocity { ritz, interpolation } velocity = ritz;
     bool normalise = false;  ///< rescale nu_h to unit length at every node after each step (§13.2)
     double stabilise = 0;    ///< alpha >= 0 of the term -alpha int (nu_h - nu_Gamma_h) . phi of §14; 1/time
@@ -43,6 +44,7 @@ class MeanCurvatureFlow {
 
   const SurfaceSpace& space_;
   Variant variant_;
+  double mass_factor_;  ///< 1/L²
   SymmetricMatrix M_, A_;
   SparseCholesky cholesky_;
   Field x_tilde_, u_tilde_, loads_, sum_, M_sum_;

@@ -30,11 +30,12 @@ CoupledDiffusionParameters tumour_growth_parameters() {
 
 CoupledDiffusionState tumour_growth_state(const SurfaceSpace& space, const Field& x,
                                           const TumourGrowth::Kinetics& kinetics, double disturbance,
-                                          unsigned seed) {
+                                          unsigned seed, const Vec3& origin) {
   std::mt19937 engine(seed);
   const Eigen::RowVector2d steady = TumourGrowth::steady_state(kinetics);
   Field u = steady.replicate(x.rows(), 1);
-  for (int l = 0; l < 2; ++l) u.col(l) += disturbance * steady[l] * plane_waves(x, engine);
+  for (int l = 0; l < 2; ++l)
+    u.col(l) += disturbance * steady[l] * plane_waves(x, origin, space.length(), engine);
   return coupled_diffusion_state(space, 0, x, Field::Zero(x.rows(), 3), u);
 }
 

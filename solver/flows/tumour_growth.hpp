@@ -40,9 +40,10 @@ class TumourGrowth {
 /// alpha = 1, beta = epsilon = 0.01, diffusion 1 and 10.
 CoupledDiffusionParameters tumour_growth_parameters();
 
-/// The steady state on nodes x, disturbed by plane waves of up to `disturbance` of itself, and v = 0; t = 0.
+/// The steady state on nodes x, disturbed by plane waves of up to `disturbance` of itself, in units of the
+/// space's length from `origin`, and v = 0; t = 0.
 CoupledDiffusionState tumour_growth_state(const SurfaceSpace& space, const Field& x,
                                           const TumourGrowth::Kinetics& kinetics, double disturbance = 0.01,
-                                          unsigned seed = 1);
+                                          unsigned seed = 1, const Vec3& origin = Vec3::Zero());
 
 }  // namespace esfem

@@ -58,7 +58,8 @@ Field constraint(const SurfaceSpace& space, const SymmetricMatrix& A, const Fiel
 }  // namespace
 
 /// F(x~, u~) w^n of the variant `implicit`. With S the solution of the block system, (u, w) = S(r + F w, s),
-/// w solves w - S_w(F w, 0) = S_w(r, s), by GMRES on the factors that are there.
+/// w solves w - S_w(F w, 0) = S_w(r, s), by GMRES on the factors that are there. Its unknowns have one unit:
+/// L V and z.
 struct WillmoreFlow::ImplicitCoupling {
   static constexpr double tolerance = 1e-12;
   static constexpr int most_iterations = 100;
@@ -66,13 +67,14 @@ struct WillmoreFlow::ImplicitCoupling {
   Field input, image, zero;
   Eigen::VectorXd w, rhs;
 
-  /// image = F(x, u) w; the first four columns of `input` are u.
+  /// image = F(x, u) w for w = (L V, z); the first four columns of `input` are u.
   void apply_F(const SurfaceSpace& space, const Field& x, Eigen::Map<const Field> w_now) {
     const auto F = [](const PointData<8>& p, Integrand<4, 0>& load) {
       for (Pack& value : load.value) value = Pack{};
       add_F(willmore_point(p, true), p.u + 4, load.value);
     };
     input.rightCols(4) = w_now;
+    input.col(4) /= space.length();
     space.assemble_load<8, 4, 0>(x, input, F, image);
   }
 
@@ -82,13 +84,16 @@ struct WillmoreFlow::ImplicitCoupling {
     const Eigen::Index n = r.rows();
     input = u_w;
     w = Eigen::Map<const Eigen::VectorXd>(u_w.col(4).data(), 4 * n);
+    w.head(n) *= space.length();
     Field u_explicit = r, w_explicit = s;
     block.solve(u_explicit, w_explicit);
+    w_explicit.col(0) *= space.length();
     rhs = Eigen::Map<const Eigen::VectorXd>(w_explicit.data(), 4 * n);
     const LinearMap map = [&](const Eigen::VectorXd& from, Eigen::VectorXd& to) {
       apply_F(space, x, {from.data(), n, 4});
       zero.setZero(n, 4);
       block.solve(image, zero);
+      zero.col(0) *= space.length();
       to = from - Eigen::Map<const Eigen::VectorXd>(zero.data(), 4 * n);
     };
     solve_gmres(map, rhs, tolerance, most_iterations, w);

@@ -18,14 +18,14 @@ void check_adaptive_grid(const AdaptiveGrid& grid) {
   if (!(grid.largest_step == 0 || grid.largest_step >= grid.first_step))
     throw InputError(format("largest step %g: expected 0 (no bound) or at least the first step %g",
                             grid.largest_step, grid.first_step));
+  for (const double unit : grid.units)
+    if (!(unit > 0) || !std::isfinite(unit))
+      throw InputError(format("unit %g of the controlled field: expected a positive number", unit));
 }
 
 nlohmann::json to_json(const AdaptiveGrid& grid) {
-  return {{"order", grid.order},
-          {"end_time", grid.end_time},
-          {"tolerance", grid.tolerance},
-          {"first_step", grid.first_step},
-          {"largest_step", grid.largest_step}};
+  return {{"order", grid.order},           {"end_time", grid.end_time},         {"tolerance", grid.tolerance},
+          {"first_step", grid.first_step}, {"largest_step", grid.largest_step}, {"units", grid.units}};
 }
 
 double next_time(const AdaptiveGrid& grid, double t, double tau) {
@@ -41,6 +41,13 @@ double step_factor(double tolerance, double error) {
 
 double root_mean_square(const Field& field) {
   return field.norm() / std::sqrt(static_cast<double>(field.rows()));
+}
+
+double root_mean_square(Field& field, const std::vector<double>& units) {
+  if (!units.empty() && static_cast<Eigen::Index>(units.size()) != field.cols())
+    throw InputError(format("%zu units for a field of %td components", units.size(), field.cols()));
+  for (std::size_t l = 0; l < units.size(); ++l) field.col(l) /= units[l];
+  return root_mean_square(field);
 }
 
 }  // namespace esfem

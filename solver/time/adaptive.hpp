@@ -2,6 +2,7 @@
 #pragma once
 
 #include <utility>
+#include <vector>
 
 #include "solver/time/integrate.hpp"
 
@@ -11,13 +12,14 @@ namespace esfem {
 struct AdaptiveGrid {
   int order = 2;  ///< of BDF, 1 or 2
   double end_time = 0;
-  double tolerance = 1e-3;   ///< of the estimate of each step; unit: that of the controlled field
-  double first_step = 1e-6;  ///< not controlled itself; a hundredth of it is the smallest step
-  double largest_step = 0;   ///< 0: no bound
+  double tolerance = 1e-3;         ///< of the estimate of each step, in `units`
+  double first_step = 1e-6;        ///< not controlled itself; a hundredth of it is the smallest step
+  double largest_step = 0;         ///< 0: no bound
+  std::vector<double> units = {};  ///< of the components of the controlled field; empty: 1
 };
 
-/// Throws InputError unless order is 1 or 2, end_time >= 0, tolerance > 0, end_time/10^12 <= first_step and,
-/// where a largest step is given, first_step <= largest_step.
+/// Throws InputError unless order is 1 or 2, end_time >= 0, tolerance > 0, end_time/10^12 <= first_step,
+/// units > 0 and, where a largest step is given, first_step <= largest_step.
 void check_adaptive_grid(const AdaptiveGrid& grid);
 nlohmann::json to_json(const AdaptiveGrid& grid);
 
@@ -32,6 +34,9 @@ double step_factor(double tolerance, double error);
 /// The size of a nodal field: sqrt(sum of squares / number of nodes).
 double root_mean_square(const Field& field);
 
+/// That of the field whose components are measured in `units`: one for each, or none. Changes the field.
+double root_mean_square(Field& field, const std::vector<double>& units);
+
 /// Takes one step to next.t and returns the factor for the size of the following one. Throws NumericsError
 /// when the estimated error is more than 4 times the tolerance. `difference` is work space.
 template <class Flow>
@@ -44,7 +49,7 @@ double attempt_step(Flow& flow, const AdaptiveGrid& grid, History<typename Flow:
   if (available < 2) return 1;
   past.extrapolate(2, controlled, difference);
   difference -= next.*controlled;
-  const double error = root_mean_square(difference);
+  const double error = root_mean_square(difference, grid.units);
   if (!(error <= 4 * grid.tolerance))
     throw NumericsError(format("estimated error %g of a step of size %g: at most %g expected", error,
                                next.t - past.back(0).t, 4 * grid.tolerance));

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "solver/assembly/size.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
@@ -47,6 +48,18 @@ TEST_P(SurfaceSpaceOfDegree, AreaAndVolumeOfTheSphereConverge) {
   const double expected = k % 2 == 0 ? k + 2 : k + 1;
   EXPECT_GE(order(area_error[0], area_error[1]), expected - 0.15);
   EXPECT_GE(order(volume_error[0], volume_error[1]), expected - 0.15);
+}
+
+TEST_P(SurfaceSpaceOfDegree, VolumeKeepsItsDigitsFarFromTheOrigin) {
+  Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, GetParam(), 1);
+  // Coordinates that stay exact far away.
+  mesh.nodes = mesh.nodes.unaryExpr([](double x) { return std::ldexp(std::round(std::ldexp(x, 30)), -30); });
+  const SurfaceSpace space(mesh);
+  const double volume = space.volume(mesh.nodes), area = space.area(mesh.nodes);
+  const Field far = mesh.nodes.rowwise() + Eigen::RowVector3d(1 << 20, -(1 << 19), 0);
+  EXPECT_NEAR(space.volume(far) / volume, 1, 1e-10);
+  EXPECT_NEAR(space.area(far) / area, 1, 1e-9);
+  EXPECT_EQ(far_centre(mesh.nodes, space.length()), Vec3::Zero());
 }
 
 TEST_P(SurfaceSpaceOfDegree, LoadsAgreeWithMatrices) {

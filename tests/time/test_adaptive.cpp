@@ -66,6 +66,16 @@ TEST(Adaptive, WeightsOfEqualStepsLoseTheOrder) {
   EXPECT_LT(order_in_tolerance<EqualStepWeights>(2), 0.8);
 }
 
+TEST(Adaptive, ToleranceIsInUnitsOfTheControlledField) {
+  AdaptiveGrid grid = {2, 2, 1e-5, 1e-6, 0};
+  grid.units.assign(LinearOde::exact(0).u.cols(), 16);
+  const Result in_units = run(grid), plain = run({2, 2, 16e-5, 1e-6, 0});
+  EXPECT_EQ(in_units.run.steps, plain.run.steps);
+  EXPECT_NEAR(in_units.error, plain.error, 1e-10);
+  grid.units.push_back(1);
+  EXPECT_THROW(run(grid), InputError);
+}
+
 TEST(Adaptive, EndsAtTheEndTime) {
   for (const double end : {1e-7, 1e-6, 1.5e-6, 0.1, 1.0 / 3, 2.0})
     for (const double tolerance : {1e-2, 1e-5}) EXPECT_EQ(run({2, end, tolerance, 1e-6, 0}).end, end);
@@ -217,7 +227,8 @@ TEST(Adaptive, BadGridsAreErrors) {
                                    {2, 1, 1e-3, 0, 0},
                                    {2, 1, 1e-3, 1e-14, 0},
                                    {2, 1, 1e-3, 1e-6, 1e-7},
-                                   {2, 1, 1e-3, 1e-6, NAN}})
+                                   {2, 1, 1e-3, 1e-6, NAN},
+                                   {2, 1, 1e-3, 1e-6, 0, {1, 0}}})
     EXPECT_THROW(check_adaptive_grid(grid), InputError);
   EXPECT_NO_THROW(check_adaptive_grid({1, 0, 1e-3, 1e-6, 1e-6}));
 }
