@@ -65,7 +65,12 @@ class SymmetricMumps {
   /// Throws NumericsError when the matrix is singular, or needs more memory than there is.
   void factorise() {
     factorised_ = false;
-    const int status = call(factorise_numbers), singular = -10;
+    const int singular = -10, too_little_memory = -9, most_memory = 10000;
+    int status = call(factorise_numbers);
+    while (status == too_little_memory && control(14) < most_memory) {  // pivots were put off
+      control(14) *= 4;
+      status = call(factorise_numbers);
+    }
     if (status == singular) throw NumericsError(system_ + " is singular");
     if (status < 0) throw failed("factorisation", status);
     factorised_ = true;
