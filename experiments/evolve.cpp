@@ -271,7 +271,7 @@ bool evolves_curvature(const EvolveConfig& config) {
 int evolve(const std::string& file, const json& origin) {
   const json config_json = read_json(file);
   const EvolveConfig config = evolve_config(config_json, file);
-  warn(config.mesh_remark);
+  for (const std::string& remark : config.mesh_remarks) warn(remark);
   const SurfaceSpace space(config.mesh, config.rule);
   const bool fourth_order = config.flow == "willmore" || config.flow == "surface_diffusion";
   SnapshotPlan plan = config.snapshots;

@@ -70,12 +70,6 @@ Quadrature quadrature(const json& description, const std::string& where) {
                           : symmetric_quadrature(reader.integer("degree"));
 }
 
-bool truth_or(const JsonReader& reader, const json& description, const std::string& key, bool otherwise) {
-  if (!reader.has(key)) return otherwise;
-  if (!description[key].is_boolean()) reader.wrong_type(key, "true or false", description[key]);
-  return description[key].get<bool>();
-}
-
 MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const std::string& where) {
   using Variant = MeanCurvatureFlow::Variant;
   const JsonReader reader(description, where);
@@ -88,7 +82,7 @@ MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const
     }
     variant.velocity = velocity == "ritz" ? Variant::ritz : Variant::interpolation;
   }
-  variant.normalise = truth_or(reader, description, "normalise", false);
+  variant.normalise = reader.truth_or("normalise", false);
   variant.stabilise = reader.number_or("stabilise", 0);
   if (!(variant.stabilise >= 0)) {
     throw InputError(
@@ -119,13 +113,13 @@ void read_willmore_variant(const json& description, const std::string& where, Ev
   variant.law = config.flow == "willmore" ? Variant::willmore : Variant::surface_diffusion;
   variant.F = choice<Variant::Coupling>(
       reader, "F", {{"extrapolated", Variant::extrapolated}, {"implicit", Variant::implicit}}, variant.F);
-  variant.project = truth_or(reader, description, "project", variant.project);
+  variant.project = reader.truth_or("project", variant.project);
   variant.relaxation = reader.number_or("relaxation", 0);
   if (!(variant.relaxation >= 0)) {
     throw InputError(
         format("%s: found relaxation = %g; expected a number >= 0", where.c_str(), variant.relaxation));
   }
-  config.willmore_theta = truth_or(reader, description, "theta", config.surface.has_value());
+  config.willmore_theta = reader.truth_or("theta", config.surface.has_value());
   if (config.willmore_theta && !config.surface)
     throw InputError(where + ": theta needs exact initial data; expected a \"surface\", or \"theta\": false");
 }
@@ -166,7 +160,7 @@ void read_cahn_hilliard(const JsonReader& reader, const std::string& source, Evo
   const json& description = reader.object("variant");
   const JsonReader variant(description, source + ": variant");
   variant.accept_only({"theta", "initial"});
-  run.theta = truth_or(variant, description, "theta", false);
+  run.theta = variant.truth_or("theta", false);
   run.initial = choice<StartValues>(
       variant, "initial", {{"interpolation", StartValues::interpolation}, {"ritz", StartValues::ritz}},
       StartValues::interpolation);
@@ -263,10 +257,6 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   }
   reader.accept_only({"flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start", "quadrature",
                       "variant", "output", "problem", "parameters", "adaptive"});
-  const int degree = reader.integer_within("degree", 2, 1, max_degree);
-  config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
-                : config.flow == "bgn" && degree == 1 ? vertex_quadrature()
-                                                      : default_quadrature(degree);
   if (reader.has("adaptive"))
     config.adaptive = adaptive_grid(reader, config.flow);
   else
@@ -300,12 +290,18 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
     else if (reader.has("variant"))
       throw InputError(source + ": flow " + config.flow + " has no variants; expected no key variant");
   }
+  std::optional<int> degree;
+  if (reader.has("degree")) degree = reader.integer_within("degree", 0, 1, max_degree);
   const JsonReader mesh(reader.object("mesh"), source + ": mesh");
-  ReadMesh start = evolve_mesh(mesh, degree, config.surface);
-  config.mesh = std::move(start.mesh);
-  config.mesh_remark = start.remark;
-  config.fields = std::move(start.fields);
-  config.node_numbers = std::move(start.node_numbers);
+  EvolveMesh initial = evolve_mesh(mesh, degree, config.surface);
+  config.mesh = std::move(initial.start.mesh);
+  config.mesh_remarks = std::move(initial.remarks);
+  config.fields = std::move(initial.start.fields);
+  config.node_numbers = std::move(initial.start.node_numbers);
+  const int k = config.mesh.degree;
+  config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
+                : config.flow == "bgn" && k == 1 ? vertex_quadrature()
+                                                 : default_quadrature(k);
   move_near_origin(config);
   scale_defaults(reader, config);
   return config;

@@ -25,7 +25,7 @@ struct EvolveConfig {
   Mesh mesh;                               ///< P_k; on the surface, where there is one
   Vec3 origin = Vec3::Zero();              ///< of the mesh's coordinates in those of its file
   Vec3 disturbance_origin = Vec3::Zero();  ///< of the waves that disturb initial values
-  std::string mesh_remark;                 ///< what the reader of the mesh changed; empty: nothing
+  std::vector<std::string> mesh_remarks;   ///< what was changed or chosen when the mesh was made
   std::vector<PointField> fields;          ///< nodal values of the mesh file; nan where it has none
   std::vector<long> node_numbers;          ///< the file's own, of the first nodes; empty: 1, 2, ..
   TimeGrid grid;

@@ -26,12 +26,17 @@ std::string evolve_config_help() {
                | {"alpha": 1 L^2, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30/L^2, "delta": 0.4/L,
                   "disturbance": 0.01, "seed": 1},                                             tumour_growth
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
-   "mesh": {"file": "a.msh"}                  .msh, .off, .obj, .ply, .stl, .vtu of evolve (plots/convert_mesh.py converts other
+   "mesh": {"file": "a.msh",                  .msh, .off, .obj, .ply, .stl, .vtu of evolve (plots/convert_mesh.py converts other
                                               files): closed, of one or several parts; seams, polygons and orientation are
                                               mended with a remark; nodes are projected to the surface, where one is given
+            "remesh": 0.1,                    flat triangles made anew with edges of about this length, on those of the
+                                              file; default: not. Edges sharper than feature_angle are kept
+            "curve": true}                    nodes of degree 2 to 4 on a smooth surface through the corners; default: not.
+                                              {"feature_angle": 40}, in degrees: sharper edges stay sharp
          | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
-   "degree": 2,                               1..4
+   "degree": 2,                               1..4; default of a file without "surface": its own, 1 where triangles are flat
+                                              and not curved: nu and H of flat ones do not converge with higher degrees
    "bdf": 3,                                  1..5; bgn: 1
    "tau": 0.05,                               step size (no default)
    "steps": 0,                                end time = steps tau; 0 writes the initial surface

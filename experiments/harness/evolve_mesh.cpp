@@ -2,7 +2,9 @@
 #include "experiments/harness/evolve_mesh.hpp"
 
 #include "solver/error.hpp"
+#include "solver/mesh/curve.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/mesh/remesh.hpp"
 
 namespace esfem {
 
@@ -30,26 +32,136 @@ void raise_degree(ReadMesh& start, int degree) {
   if (start.mesh.nodes.rows() < n || start.mesh.nodes.topRows(n) != given.nodes) start.node_numbers.clear();
 }
 
+/// What "mesh" asks to be done with a file.
+struct FileTreatment {
+  std::optional<double> remesh;  ///< edge length
+  bool curve = false;
+  double feature_angle = default_feature_angle;
+};
+
+FileTreatment file_treatment(const JsonReader& description) {
+  FileTreatment treatment;
+  if (description.has("remesh")) treatment.remesh = description.number("remesh");
+  treatment.curve = description.is_object("curve") || description.truth_or("curve", false);
+  if (!description.is_object("curve")) return treatment;
+  const JsonReader curve(description.object("curve"), description.where() + ": curve");
+  curve.accept_only({"feature_angle"});
+  treatment.feature_angle = curve.number_or("feature_angle", default_feature_angle);
+  if (!(treatment.feature_angle > 0 && treatment.feature_angle <= 180))
+    throw InputError(format("%s: found feature_angle = %g; expected degrees, more than 0 and at most 180",
+                            curve.where().c_str(), treatment.feature_angle));
+  return treatment;
+}
+
+/// Linear in the triangles of the mesh that was remeshed.
+Field values_at(const std::vector<MeshPoint>& points, const Mesh& mesh, const Field& values) {
+  Field result(points.size(), values.cols());
+  for (int i = 0; i < result.rows(); ++i)
+    result.row(i) = points[i].weights.transpose() * values(mesh.elements.row(points[i].element), Eigen::all);
+  return result;
+}
+
+/// The flat mesh of a file with edges of another length; its nodes on the smooth surface through the file's
+/// corners where that is what the mesh will stand for.
+void remesh_file(ReadMesh& start, const std::string& file, const FileTreatment& treatment, int degree,
+                 std::vector<std::string>& remarks) {
+  const Mesh flat = std::move(start.mesh);
+  RemeshedSurface found;
+  try {
+    found = remesh(flat, *treatment.remesh, treatment.feature_angle);
+  } catch (const InputError& error) {
+    throw InputError(file + ": " + error.what());
+  }
+  if (treatment.curve) {
+    const SmoothSurface surface(flat, degree, treatment.feature_angle);
+    for (int i = 0; i < found.mesh.nodes.rows(); ++i)
+      found.mesh.nodes.row(i) = surface.point(found.on_input[i].element, found.on_input[i].weights);
+  }
+  check_closed_surface(found.mesh, file + ", remeshed");
+  for (PointField& field : start.fields) field.values = values_at(found.on_input, flat, field.values);
+  start.node_numbers.clear();
+  const MeshQuality before = mesh_quality(flat.elements, flat.nodes),
+                    after = mesh_quality(found.mesh.elements, found.mesh.nodes);
+  remarks.push_back(format(
+      "%s: remeshed with edges of about %g: %d nodes before, %d after; worst radius ratio %.2g before, %.2g "
+      "after; %d of %d edges sharper than %g degrees kept; the volume changes by %.2g%%",
+      file.c_str(), *treatment.remesh, int(flat.nodes.rows()), int(found.mesh.nodes.rows()),
+      before.min_radius_ratio, after.min_radius_ratio, found.kept, found.sharp_edges, treatment.feature_angle,
+      100 * found.relative_volume_change));
+  start.mesh = std::move(found.mesh);
+}
+
+void curve_file(ReadMesh& start, const std::string& file, const FileTreatment& treatment, int degree,
+                std::vector<std::string>& remarks) {
+  CurvedMesh result = curved_mesh(start.mesh, degree, treatment.feature_angle);
+  std::string remark = format("%s: curved; %d of %d edges are sharper than %g degrees and kept", file.c_str(),
+                              result.sharp_edges, result.edges, treatment.feature_angle);
+  if (result.straight > 0)
+    remark += format("; %d of %d nodes stay on the flat triangles, where the surface is too rough or coarse",
+                     result.straight, int(result.mesh.nodes.rows()));
+  remarks.push_back(remark);
+  raise_degree(start, degree);
+  start.mesh.nodes = result.mesh.nodes;  // numbered alike
+}
+
+EvolveMesh mesh_of_file(const JsonReader& description, std::optional<int> degree, bool on_surface) {
+  const std::string file = description.text("file");
+  const FileTreatment treatment = file_treatment(description);
+  if (treatment.curve && on_surface)
+    throw InputError(description.where() +
+                     ": found curve, and a \"surface\" to which nodes are projected; "
+                     "expected one of them");
+  if (treatment.curve && degree.value_or(2) < 2)
+    throw InputError(description.where() +
+                     ": found curve and degree = 1; expected degree 2 to 4, or no curve");
+  EvolveMesh result{read_mesh(file), {}};
+  ReadMesh& start = result.start;
+  if (!start.remark.empty()) result.remarks.push_back(file + ": " + start.remark);
+  const bool flat = is_flat(start.mesh);
+  if (!flat && !on_surface && (treatment.curve || treatment.remesh))
+    throw InputError(file + ": the elements are curved; expected flat triangles for curve and remesh");
+  const int k = degree.value_or(on_surface || treatment.curve ? 2 : flat ? 1 : start.mesh.degree);
+  if (treatment.curve || treatment.remesh) raise_degree(start, 1);
+  if (treatment.remesh) remesh_file(start, file, treatment, k, result.remarks);
+  if (treatment.curve)
+    curve_file(start, file, treatment, k, result.remarks);
+  else
+    raise_degree(start, k);
+  if (!flat || on_surface || treatment.curve) return result;
+  const char* const cure =
+      "\"curve\": true beside \"file\" puts the nodes on a smooth surface through the corners";
+  if (!degree)
+    result.remarks.push_back(file + ": flat triangles, so degree 1 is taken; for degree 2 " + cure);
+  else if (k > 1)
+    result.remarks.push_back(format(
+        "%s: flat triangles with elements of degree %d: edges are straight and creases stay, so that nu and "
+        "H do not converge; %s",
+        file.c_str(), k, cure));
+  return result;
+}
+
 }  // namespace
 
-ReadMesh evolve_mesh(const JsonReader& description, int degree, const std::optional<Surface>& surface) {
-  const std::string key = description.only_key({"file", "edge_length", "subdivisions"});
-  if (key != "file" && !surface) {
-    throw InputError(description.where() + ": " + key +
-                     " needs a \"surface\"; expected one, or a mesh with the key file");
-  }
-  ReadMesh start;
-  if (key == "file") {
-    start = read_mesh(description.text("file"));
-  } else if (key == "edge_length") {
-    start.mesh = generate_mesh(*surface, description.number("edge_length"));
+EvolveMesh evolve_mesh(const JsonReader& description, std::optional<int> degree,
+                       const std::optional<Surface>& surface) {
+  EvolveMesh result;
+  if (description.has("file")) {
+    description.accept_only({"file", "curve", "remesh"});
+    result = mesh_of_file(description, degree, surface.has_value());
   } else {
-    start.mesh =
-        subdivided(*surface, description.integer_within("subdivisions", 0, 0, 8), description.where());
+    const std::string key = description.only_key({"file", "edge_length", "subdivisions"});
+    if (!surface) {
+      throw InputError(description.where() + ": " + key +
+                       " needs a \"surface\"; expected one, or a mesh with the key file");
+    }
+    const Mesh mesh =
+        key == "edge_length"
+            ? generate_mesh(*surface, description.number("edge_length"))
+            : subdivided(*surface, description.integer_within("subdivisions", 0, 0, 8), description.where());
+    result.start.mesh = lagrange_mesh(mesh, degree.value_or(2));
   }
-  raise_degree(start, degree);
-  if (surface) project_nodes(start.mesh, *surface);
-  return start;
+  if (surface) project_nodes(result.start.mesh, *surface);
+  return result;
 }
 
 }  // namespace esfem

@@ -2,15 +2,23 @@
 #pragma once
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "solver/analysis/json_reader.hpp"
 #include "solver/mesh/read.hpp"
 
 namespace esfem {
 
-/// The initial mesh of degree k that "mesh" of a configuration describes, on the surface where one is given;
-/// what was changed in a file, and its nodal values at the nodes of this mesh. Throws InputError, which names
-/// the key or the file.
-ReadMesh evolve_mesh(const JsonReader& description, int degree, const std::optional<Surface>& surface);
+struct EvolveMesh {
+  ReadMesh start;  ///< of degree k, on the surface where there is one; nodal values at its nodes
+  std::vector<std::string> remarks;  ///< what was changed or chosen, and what is to be expected of it
+};
+
+/// The initial mesh that "mesh" of a configuration describes: generated, or read, remeshed and curved. Where
+/// no degree is given it is 2; for a file without a surface that of its elements, 1 when they are flat and
+/// are not to be curved. Throws InputError, which names the key or the file.
+EvolveMesh evolve_mesh(const JsonReader& description, std::optional<int> degree,
+                       const std::optional<Surface>& surface);
 
 }  // namespace esfem

@@ -40,6 +40,13 @@ double JsonReader::number(const std::string& key) const {
   return value;
 }
 
+bool JsonReader::truth_or(const std::string& key, bool otherwise) const {
+  if (!has(key)) return otherwise;
+  const Json& value = at(key);
+  if (!value.is_boolean()) wrong_type(key, "true or false", value);
+  return value;
+}
+
 int JsonReader::integer(const std::string& key) const {
   const Json& value = at(key);
   if (!value.is_number_integer()) wrong_type(key, "an integer", value);

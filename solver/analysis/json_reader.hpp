@@ -23,6 +23,8 @@ class JsonReader {
   double number_or(const std::string& key, double otherwise) const {
     return has(key) ? number(key) : otherwise;
   }
+  bool truth_or(const std::string& key, bool otherwise) const;
+  bool is_object(const std::string& key) const { return has(key) && json_[key].is_object(); }
   int integer(const std::string& key) const;
   /// An integer between low and high; `otherwise` where the key is not there.
   int integer_within(const std::string& key, int otherwise, int low, int high) const;
