@@ -293,6 +293,10 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   std::optional<int> degree;
   if (reader.has("degree")) degree = reader.integer_within("degree", 0, 1, max_degree);
   const JsonReader mesh(reader.object("mesh"), source + ": mesh");
+  if (mesh.has("file") && is_snapshot_of(mesh.text("file"), config.snapshots.pvd))
+    throw InputError(
+        source + ": output: found vtu = \"" + config.snapshots.pvd +
+        "\", but the mesh is one of its snapshots, which a new run removes; expected another name");
   EvolveMesh initial = evolve_mesh(mesh, degree, config.surface);
   config.mesh = std::move(initial.start.mesh);
   config.mesh_remarks = std::move(initial.remarks);

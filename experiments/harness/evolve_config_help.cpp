@@ -73,7 +73,8 @@ file come first, in its order. elements are the rows of the nodes of each elemen
 of the edges 01, 12, 20, then inner ones); node_numbers, where they are not 1, 2, .., the file's own of its nodes.
 A run starts from the nodal values of its mesh file ($NodeData of .msh, point data of .vtu) that have these names: nu
 and H, with V and z (mean_curvature, willmore, surface_diffusion; without "surface"), u with w (phase_separation), u1 and
-u2 with v (tumour_growth), and says so; t starts at 0. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
+u2 with v (tumour_growth), and says so; t starts at 0, and defaults are relative to the length of this surface: to go on
+with the parameters of the run before, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
 (degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
 willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and
 energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as

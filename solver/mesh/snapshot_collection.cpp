@@ -74,6 +74,16 @@ std::string SnapshotCollection::add(int n, double t, const Field& x, const std::
   return name;
 }
 
+bool is_snapshot_of(const std::string& file, const std::string& pvd) {
+  const auto folder = [](const fs::path& path) {
+    std::error_code error;
+    return fs::weakly_canonical(fs::absolute(path, error).parent_path(), error);
+  };
+  return !pvd.empty() &&
+         is_snapshot_name(fs::path(file).filename().string(), fs::path(pvd).stem().string()) &&
+         folder(file) == folder(pvd);
+}
+
 void SnapshotCollection::resume(std::vector<std::pair<double, std::string>> snapshots) {
   const fs::path folder = fs::path(pvd_).parent_path();
   for (const auto& [t, name] : snapshots)

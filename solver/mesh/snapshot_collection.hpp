@@ -36,4 +36,7 @@ class SnapshotCollection {
   bool others_removed_ = false;
 };
 
+/// Whether a file has the place and the name of a snapshot in this collection, which a new run removes.
+bool is_snapshot_of(const std::string& file, const std::string& pvd);
+
 }  // namespace esfem

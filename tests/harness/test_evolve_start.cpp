@@ -83,6 +83,15 @@ TEST_F(EvolveStart, FromItsOwnSnapshotIsTheSameSurfaceToTheLastBit) {
   }
 }
 
+TEST_F(EvolveStart, TheSnapshotOfTheStartIsNotRemoved) {
+  const std::string snapshot = path("run_0000.vtu");
+  ASSERT_EQ(run(config({{"steps", 0}, {"output", {{"vtu", path("run.pvd")}}}})), exit_done) << message;
+  EXPECT_EQ(run(from_file(snapshot, {{"output", {{"vtu", path("./run.pvd")}}}})), exit_usage);
+  EXPECT_THAT(message, HasSubstr("one of its snapshots"));
+  EXPECT_TRUE(std::filesystem::exists(snapshot));
+  EXPECT_EQ(run(from_file(snapshot, {{"output", {{"vtu", path("more.pvd")}}}})), exit_done) << message;
+}
+
 TEST_F(EvolveStart, NodesKeepTheOrderAndTheNumbersOfTheFile) {
   const Mesh mesh = octasphere(1, 0);
   for (const int degree : {1, 2, 4}) {
