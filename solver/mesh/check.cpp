@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "solver/fe/lagrange.hpp"
 #include "solver/mesh/mesh_file.hpp"
 #include "solver/mesh/orientation.hpp"
+#include "solver/mesh/reconnect.hpp"
 #include "solver/mesh/sides.hpp"
 
 namespace esfem {
@@ -52,13 +54,8 @@ void check_elements(const Mesh& mesh, const MeshOrigin& origin) {
                "degenerate, it has " + origin.node(node) + " twice, distinct nodes expected");
       used[node] = true;
     }
-    const Vec3 a = mesh.nodes.row(mesh.elements(e, 0)), b = mesh.nodes.row(mesh.elements(e, 1)),
-               c = mesh.nodes.row(mesh.elements(e, 2));
-    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
-    const double area = 0.5 * (b - a).cross(c - a).norm();
-    // Round-off of collinear points is near 1e-16; no triangle that can be computed with is near 1e-10.
-    if (!(area > 1e-10 * longest * longest))
-      fail(origin, origin.element(e), format("degenerate, its area is %g, a positive area expected", area));
+    if (has_no_area(mesh, e))
+      fail(origin, origin.element(e), "degenerate, its corners are on a line, a positive area expected");
   }
   for (int i = 0; i < n; ++i)
     if (!used[i]) fail(origin, origin.node(i), "in no element, every node in at least one expected");
@@ -217,6 +214,12 @@ void check_curved_edges(const Mesh& mesh, const MeshOrigin& origin, const std::v
 }
 
 }  // namespace
+
+void number_by_position(std::vector<long>& tags, long n) {
+  if (!tags.empty()) return;
+  tags.resize(std::size_t(n));
+  std::iota(tags.begin(), tags.end(), 1);
+}
 
 std::string MeshOrigin::node(int i) const {
   return label("node", i, node_tags, node_lines, own_numbers);

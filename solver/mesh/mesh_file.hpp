@@ -23,6 +23,9 @@ struct MeshOrigin {
   std::string element(int e) const;
 };
 
+/// Gives n nodes or elements without numbers their positions as numbers: before one is dropped or added.
+void number_by_position(std::vector<long>& tags, long n);
+
 /// A mesh as its file has it, before any check of the surface; elements name nodes that exist.
 struct MeshFile {
   Mesh mesh;

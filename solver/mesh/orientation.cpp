@@ -168,8 +168,9 @@ std::string orient(Mesh& mesh, const MeshOrigin& origin, const std::vector<int>&
   if (against > 0)
     add(format("%ld element%s oriented against the others: turned", long(against), against > 1 ? "s" : ""));
   if (const auto n = std::count(inward.begin(), inward.end(), true); n > 0)
-    add(components.size() == 1 ? "orientation was inward: turned"
-                               : format("orientation of %ld components was inward: turned", long(n)));
+    add(components.size() == 1
+            ? "orientation was inward: turned"
+            : format("orientation of %ld component%s inward: turned", long(n), n > 1 ? "s were" : " was"));
   return remark;
 }
 

@@ -20,12 +20,13 @@ struct ReadMesh {
 /// and binary (.msh; triangles of degree 1 to 4, curved nodes kept, 4-node quadrangles, or the boundary of
 /// volume elements), the snapshots of write_vtu (.vtu), OFF, OBJ, PLY, STL. What can be mended without a
 /// guess is mended, and the remark says so: polygons are cut into triangles, nodes in no triangle are
-/// dropped, nodes in one place along open sides are joined, elements with two equal corners are dropped
-/// (`repair`), elements are oriented alike and outward (`orient`). Throws InputError, one line that names the
-/// file, the line or element, and what was expected, for a file that is missing, cut off or not of its
-/// format, and for a surface that is not closed, non-manifold, not orientable, pressed flat, or has NaN,
-/// degenerate or duplicate triangles, or other elements. Nodes and elements have the file's own numbers in
-/// errors (MSH) or are counted from 1. Points and lines of MSH files are skipped.
+/// dropped, nodes in one place along open sides are joined, elements with two equal corners are dropped,
+/// those with corners on a line are flipped, nodes where the surface touches itself are doubled (`repair`),
+/// elements are oriented alike and outward (`orient`). Throws InputError, one line that names the file, the
+/// line or element, and what was expected, for a file that is missing, cut off or not of its format, and for
+/// a surface that is not closed, non-manifold, not orientable, pressed flat, or has NaN, degenerate or
+/// duplicate triangles, or other elements. Nodes and elements have the file's own numbers in errors (MSH) or
+/// are counted from 1. Points and lines of MSH files are skipped.
 ReadMesh read_mesh(const std::string& file);
 
 /// The checks of `read_mesh` on a mesh of any degree that comes from elsewhere, without its repairs; `source`

@@ -23,7 +23,8 @@ void read_vertex(Lines& lines, Polygons& result) {
   for (int i = 4; i <= numbers; ++i) lines.real(i, "weight or colour");
 }
 
-/// The vertex of v, v/vt, v//vn or v/vt/vn; all of its parts must be integers.
+/// The vertex of v, v/vt, v//vn or v/vt/vn; all parts must be integers, and those behind a slash may be
+/// empty.
 long vertex_of_corner(const Lines& lines, const std::string& word) {
   long vertex = 0;
   std::size_t start = 0;
@@ -31,7 +32,7 @@ long vertex_of_corner(const Lines& lines, const std::string& word) {
     const std::size_t end = std::min(word.find('/', start), word.size());
     long number = 0;
     const auto [stop, error] = std::from_chars(word.data() + start, word.data() + end, number);
-    const bool left_out = part == 1 && start == end && end < word.size();
+    const bool left_out = part > 0 && start == end;
     if (!left_out && (error != std::errc() || stop != word.data() + end)) break;
     if (part == 0) vertex = number;
     if (end == word.size()) return vertex;

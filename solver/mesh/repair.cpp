@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "solver/error.hpp"
+#include "solver/mesh/reconnect.hpp"
 #include "solver/mesh/sides.hpp"
 
 namespace esfem {
@@ -24,13 +25,6 @@ void keep(std::vector<Value>& values, const std::vector<int>& kept) {
   std::vector<Value> result;
   for (int i : kept) result.push_back(values[i]);
   values = std::move(result);
-}
-
-/// Keeps the numbers that errors name, which are those of the file.
-void number_by_position(std::vector<long>& tags, long n) {
-  if (!tags.empty()) return;
-  tags.resize(std::size_t(n));
-  std::iota(tags.begin(), tags.end(), 1);
 }
 
 /// Returns how many nodes were dropped.
@@ -234,6 +228,8 @@ void repair(MeshFile& file) {
     file.remarks.push_back(format("%d node%s in no triangle: dropped", dropped, dropped > 1 ? "s" : ""));
   join_nodes(file);
   drop_collapsed_elements(file);
+  flip_flat_elements(file);
+  split_touching_nodes(file);
 }
 
 }  // namespace esfem

@@ -12,6 +12,8 @@ namespace esfem {
 ///   at either of them: so no triangle loses an edge, however fine the mesh is, and nothing changes where the
 ///   surface is closed.
 /// - Elements with two equal corners are dropped.
+/// - Elements with three corners on a line are flipped with their neighbour (`flip_flat_elements`).
+/// - Nodes where the surface touches itself are doubled (`split_touching_nodes`).
 /// What the mesh is afterwards is judged by `check_closed_surface`.
 void repair(MeshFile& file);
 

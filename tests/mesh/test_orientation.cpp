@@ -108,11 +108,11 @@ TEST(Orient, Components) {
   EXPECT_EQ(check_closed_surface(both, "here"), "2 components");
   both = together(a, inside_out(b));
   EXPECT_EQ(check_closed_surface(both, "here"),
-            "2 components; orientation of 1 components was inward: turned");
+            "2 components; orientation of 1 component was inward: turned");
   EXPECT_NEAR(enclosed_volume(both), 9 * small_ellipsoid_volume, 1e-12);
   both = together(inside_out(a), inside_out(b));
   EXPECT_EQ(check_closed_surface(both, "here"),
-            "2 components; orientation of 2 components was inward: turned");
+            "2 components; orientation of 2 components were inward: turned");
   EXPECT_NEAR(enclosed_volume(both), 9 * small_ellipsoid_volume, 1e-12);
 }
 
@@ -125,12 +125,12 @@ TEST(Orient, CavitiesKeepTheirOrientationRelativeToTheBody) {
   EXPECT_NEAR(enclosed_volume(mesh), hollow, 1e-13);
   mesh = together(cavity, inside_out(body));
   EXPECT_EQ(check_closed_surface(mesh, "here"),
-            "2 components; orientation of 2 components was inward: turned");
+            "2 components; orientation of 2 components were inward: turned");
   EXPECT_NEAR(enclosed_volume(mesh), hollow, 1e-13);
   // Something in the cavity, and another body beside.
   mesh = together(together(inside_out(grain), cavity), together(other, inside_out(body)));
   EXPECT_EQ(check_closed_surface(mesh, "here"),
-            "4 components; orientation of 3 components was inward: turned");
+            "4 components; orientation of 3 components were inward: turned");
   EXPECT_NEAR(enclosed_volume(mesh), hollow + enclosed_volume(grain) + enclosed_volume(other), 1e-12);
   // Both outward, as the file says: two bodies.
   mesh = together(body, cavity);

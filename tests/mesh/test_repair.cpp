@@ -165,6 +165,45 @@ TEST(Repair, DropsCollapsedElements) {
                                      HasSubstr("element 4 (")));
 }
 
+TEST(Repair, FlipsElementsWithCornersOnALine) {
+  // A cube whose lower front edge has three more corners, which its bottom has not: flat elements fill the
+  // gap, one behind the other.
+  Mesh mesh;
+  mesh.nodes.resize(11, 3);
+  mesh.nodes << 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1,  // the cube
+      0.25, 0, 0, 0.5, 0, 0, 0.7, 0, 0;
+  mesh.elements.resize(18, 3);
+  mesh.elements << 2, 1, 0, 3, 2, 0, 4, 5, 6, 4, 6, 7, 1, 2, 6, 1, 6, 5,  // bottom, top, right
+      2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7,                                 // back, left
+      0, 8, 4, 8, 9, 4, 9, 10, 4, 10, 1, 4, 1, 5, 4,                      // front
+      0, 1, 10, 0, 10, 9, 0, 9, 8;
+  MeshFile file = repaired(mesh);
+  const char* remark = "3 elements with three corners on a line: flipped with the neighbour";
+  EXPECT_THAT(file.remarks, ElementsAre(remark));
+  EXPECT_EQ(repair_and_check(file), remark);
+  EXPECT_EQ(file.mesh.nodes, mesh.nodes);
+  EXPECT_NEAR(corner_area(file.mesh), 6, 1e-14);
+  EXPECT_NEAR(enclosed_volume(file.mesh), 1, 1e-14);
+}
+
+TEST(Repair, DoublesNodesWhereTheSurfaceTouchesItself) {
+  // Two octahedra with one node in common.
+  Mesh mesh = together(octasphere(1, 0), shifted(octasphere(1, 0), 2));
+  int common = -1;
+  for (int& i : mesh.elements.reshaped()) {
+    if (mesh.nodes.row(i) != Eigen::RowVector3d(1, 0, 0)) continue;
+    if (common < 0) common = i;
+    i = common;
+  }
+  MeshFile file = repaired(mesh);
+  EXPECT_THAT(file.remarks, ElementsAre("1 node in no triangle: dropped",
+                                        "1 node where the surface touches itself: added"));
+  EXPECT_EQ(file.mesh.nodes.rows(), 12);
+  EXPECT_EQ(file.origin.node(11), file.origin.node(common)) << "the file's number";
+  EXPECT_THAT(repair_and_check(file), HasSubstr("2 components"));
+  EXPECT_NEAR(enclosed_volume(file.mesh), 8. / 3, 1e-14);
+}
+
 TEST(Repair, WorksOnSizesThatOverflow) {
   EXPECT_NE(complaint(scaled(triangle_soup(octasphere(1, 0)), 1e300)), "x");
   EXPECT_NE(complaint(scaled(triangle_soup(octasphere(1, 0)), 1e-300)), "x");
