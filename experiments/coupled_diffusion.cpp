@@ -131,7 +131,7 @@ class ExtrapolationAsPrinted {
   ExtrapolationAsPrinted(const SurfaceSpace& space, const CoupledDiffusionParameters& parameters)
       : space_(space),
         problem_(parameters, CoupledDiffusionVariant::regularised),
-        scheme_(space, 1, parameters, {}) {}
+        scheme_(space, 1, parameters, {}, {}) {}
 
   void step(const History<State>& history, int q, double tau, State& next) {
     History<State> reversed(q);

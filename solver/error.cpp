@@ -26,4 +26,8 @@ SingularityError SingularityError::at(int step, double t) const {
   return SingularityError(format("singular at t = %g (step %d): %s", t, step, what()));
 }
 
+ExtinctionError ExtinctionError::at(int step, double t) const {
+  return ExtinctionError(format("%s (step %d, t = %g)", what(), step, t));
+}
+
 }  // namespace esfem

@@ -29,6 +29,12 @@ struct SingularityError : NumericsError {
   SingularityError at(int step, double t) const;  ///< "singular at t = .. (step ..): .."
 };
 
+/// The surface shrinks to nothing: what was computed before is good, and there is nothing afterwards.
+struct ExtinctionError : NumericsError {
+  using NumericsError::NumericsError;
+  ExtinctionError at(int step, double t) const;  ///< the message, with step and time behind it
+};
+
 /// printf-style formatting into a std::string ("%.17g" and so on).
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 

@@ -46,9 +46,10 @@ void ElementBatches::report_degenerate(const Batch& batch) const {
       if (evaluate(batch, q, point)[lane]) continue;
       const double ratio = dot(point.normal, batch.direction)[lane] / batch.size[lane];
       throw NumericsError(
-          format("element %d is degenerate: Jacobian at quadrature point %d is %.3g of the square of "
-                 "its longest edge, expected %.0e to %.0e",
-                 element(batch.number, lane), q, ratio, smallest_jacobian, largest_jacobian));
+          format("element %d (counted from 1, near (%g, %g, %g)) is degenerate: Jacobian at quadrature point "
+                 "%d is %.3g of the square of its longest edge, expected %.0e to %.0e",
+                 element(batch.number, lane) + 1, batch.x[0][0][lane], batch.x[0][1][lane],
+                 batch.x[0][2][lane], q, ratio, smallest_jacobian, largest_jacobian));
     }
   }
   throw NumericsError("an element is degenerate");

@@ -2,12 +2,15 @@
 #include "solver/flows/bgn_flow.hpp"
 
 #include "solver/flows/discrete_curvature.hpp"
-#include "solver/flows/regularity.hpp"
 
 namespace esfem {
 
-BgnFlow::BgnFlow(const SurfaceSpace& space)
-    : space_(space), system_(space), tau_M_(space.matrix()), zero_(Field::Zero(space.dofs(), 1)) {}
+BgnFlow::BgnFlow(const SurfaceSpace& space, const RegularityLimits& limits)
+    : space_(space),
+      limits_(limits),
+      system_(space),
+      tau_M_(space.matrix()),
+      zero_(Field::Zero(space.dofs(), 1)) {}
 
 void BgnFlow::step(const History<State>& history, int q, double tau, State& next) {
   if (q != 1) {
@@ -20,7 +23,7 @@ void BgnFlow::step(const History<State>& history, int q, double tau, State& next
   system_.solve(tau_M_, zero_, x, next.H, next.v);
   next.v /= tau;
   next.x = x + tau * next.v;
-  require_regular(space_, next.x, next.H);
+  require_regular(space_, next.x, next.H, limits_);
 }
 
 BgnFlow::State bgn_state_on(const SurfaceSpace& space, const Field& x) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/flows/bgn_system.hpp"
+#include "solver/flows/regularity.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
@@ -25,7 +26,7 @@ class BgnFlow {
   };
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
-  explicit BgnFlow(const SurfaceSpace& space);
+  explicit BgnFlow(const SurfaceSpace& space, const RegularityLimits& limits = {});
 
   /// One step; q must be 1 (InputError), the scheme is of first order. Throws SingularityError where the
   /// surface is singular or no longer resolved (regularity.hpp).
@@ -33,6 +34,7 @@ class BgnFlow {
 
  private:
   const SurfaceSpace& space_;
+  RegularityLimits limits_;
   BgnSystem system_;
   SymmetricMatrix tau_M_;
   Field zero_;

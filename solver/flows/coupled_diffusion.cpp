@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "solver/error.hpp"
-#include "solver/flows/regularity.hpp"
 
 namespace esfem {
 
@@ -31,10 +30,12 @@ void check(const CoupledDiffusionParameters& parameters, int species) {
 
 CoupledDiffusionScheme::CoupledDiffusionScheme(const SurfaceSpace& space, int species,
                                                CoupledDiffusionParameters parameters,
-                                               CoupledDiffusionVariant variant)
+                                               CoupledDiffusionVariant variant,
+                                               const RegularityLimits& limits)
     : space_(space),
       parameters_((check(parameters, species), std::move(parameters))),
       variant_(variant),
+      limits_(limits),
       M_(space.matrix()),
       A_(space.matrix()),
       cholesky_(space.pattern()) {
@@ -57,15 +58,27 @@ void CoupledDiffusionScheme::extrapolate(const History<State>& history, int q) {
 void CoupledDiffusionScheme::advance(const History<State>& history, int q, double tau, const Field& loads,
                                      State& next) {
   diffuse(history, q, tau, loads, next.u);
+  require_bounded_u(tau, next.u);
   if (variant_.law == CoupledDiffusionVariant::regularised)
     move_regularised(history, q, tau, loads, next);
   else
     move_dynamic(history, q, tau, loads, next);
-  require_regular(space_, next.x);
+  require_regular(space_, next.x, limits_);
 
   if (variant_.mass == CoupledDiffusionVariant::reassembled) space_.assemble(next.x, M_, A_);
   M_.multiply(next.u, next.Mu);
   M_.multiply(next.v, next.Mv);
+}
+
+void CoupledDiffusionScheme::require_bounded_u(double tau, const Field& u) const {
+  try {
+    require_bounded("u", x_tilde_, u, limits_);
+  } catch (const SingularityError& unbounded) {
+    if (parameters_.reaction_rate == 0) throw;
+    throw SingularityError(
+        format("%s; the reaction is taken explicitly, and its rate times the step size is %g",
+               unbounded.what(), parameters_.reaction_rate * tau));
+  }
 }
 
 // (2.19): (delta_0/tau M(x̃) + D_l A(x̃)) u_l = f_l(x̃, ũ) - 1/tau sum_{j>=1} delta_j (M u_l)^{n-j}

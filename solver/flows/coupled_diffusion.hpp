@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/assembly/surface_space.hpp"
+#include "solver/flows/regularity.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
@@ -38,6 +38,7 @@ struct CoupledDiffusionParameters {
   double alpha = 1;                     ///< > 0
   double beta = 1;                      ///< >= 0; the dynamic law has no such term
   std::vector<double> diffusion = {1};  ///< D_l > 0, one per species
+  double reaction_rate = 0;  ///< of f, 1/time, for messages about steps too large for it; 0: not known
 };
 
 /// A step of nick18 (2.18)-(2.21) with its loads given: what does not depend on f and g.
@@ -47,7 +48,7 @@ class CoupledDiffusionScheme {
 
   /// Throws InputError for parameters out of range and when there is not one D per species.
   CoupledDiffusionScheme(const SurfaceSpace& space, int species, CoupledDiffusionParameters parameters,
-                         CoupledDiffusionVariant variant);
+                         CoupledDiffusionVariant variant, const RegularityLimits& limits);
 
   /// (2.18) for x and u, and M(x̃), A(x̃). Throws SingularityError where Gamma_h[x̃] is degenerate.
   void extrapolate(const History<State>& history, int q);
@@ -55,7 +56,8 @@ class CoupledDiffusionScheme {
   const Field& u_tilde() const { return u_tilde_; }
 
   /// After extrapolate: solves (2.19)-(2.21) for all fields of next. loads: N x (m + 3), f(x̃, ũ) and g(x̃,
-  /// ũ). Throws SingularityError where elements of Gamma_h[x] have degenerated (regularity.hpp).
+  /// ũ). Throws SingularityError where u grows without bound, or elements of Gamma_h[x] have degenerated
+  /// (regularity.hpp).
   void advance(const History<State>& history, int q, double tau, const Field& loads, State& next);
 
  private:
@@ -66,6 +68,7 @@ class CoupledDiffusionScheme {
     Field u;
   };
 
+  void require_bounded_u(double tau, const Field& u) const;
   void diffuse(const History<State>& history, int q, double tau, const Field& loads, Field& u);
   void move_regularised(const History<State>& history, int q, double tau, const Field& loads, State& next);
   void move_dynamic(const History<State>& history, int q, double tau, const Field& loads, State& next);
@@ -73,6 +76,7 @@ class CoupledDiffusionScheme {
   const SurfaceSpace& space_;
   CoupledDiffusionParameters parameters_;
   CoupledDiffusionVariant variant_;
+  RegularityLimits limits_;
   std::vector<EqualDiffusion> groups_;
   SymmetricMatrix M_, A_;
   SparseCholesky cholesky_;
@@ -101,13 +105,13 @@ class CoupledDiffusion {
   /// The space gives elements, degree and quadrature; it must outlive the flow. Throws InputError for
   /// parameters out of range and when there is not one D per species.
   CoupledDiffusion(const SurfaceSpace& space, Problem problem, CoupledDiffusionParameters parameters,
-                   CoupledDiffusionVariant variant)
+                   CoupledDiffusionVariant variant, const RegularityLimits& limits = {})
       : space_(space),
         problem_(std::move(problem)),
-        scheme_(space, species, std::move(parameters), variant) {}
+        scheme_(space, species, std::move(parameters), variant, limits) {}
 
-  /// One step with BDF of order q: fills all fields of next. Throws SingularityError where the surface has
-  /// degenerated.
+  /// One step with BDF of order q: fills all fields of next. Throws SingularityError where u grows without
+  /// bound, or the surface has degenerated.
   void step(const History<State>& history, int q, double tau, State& next) {
     scheme_.extrapolate(history, q);
     const auto f_and_g = [&](const PointData<species>& p, Integrand<species + 3, 0>& load) {

@@ -26,6 +26,23 @@ class DiscreteCurvature {
   /// Willmore energy of kappa, 1/2 int |kappa_h|². Integrated.
   double willmore_energy() const { return 0.5 * M_.energy(kappa_); }
 
+  /// How far a flow's own nu (N x 3) and H (N x 1) are from the surface of the last compute(): with
+  /// f_l = (M + l² A)^-1 M f, which smooths over a length l,
+  ///   ||(H nu - kappa)_l|| / ||kappa_l||   in L2, l² = 4/sqrt(3) (mean area of an element)/k²,
+  /// l being the edge of an equilateral element, over k. kappa itself does not converge on P1 surfaces, as a
+  /// functional on H1 it does. Costs a factorisation.
+  double deviation(const Field& nu, const Field& H);
+
+  /// ||H nu - H_0 nu_0|| / ||H_0 nu_0|| in L2, with nu_0 and H_0 those of the last compute().
+  double distance(const Field& nu, const Field& H) const;
+
+  /// For nodes that move with v (N x 3): the rate at which the area changes, int grad x : grad v, and what it
+  /// would be if kappa were H nu, int H nu . v; `scale` is ||H nu|| ||v||, which bounds the second.
+  struct AreaRates {
+    double of_surface, of_fields, scale;
+  };
+  AreaRates area_rates(const Field& nu, const Field& H, const Field& v) const;
+
  private:
   const SurfaceSpace& space_;
   SymmetricMatrix M_, A_;

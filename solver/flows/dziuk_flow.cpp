@@ -3,12 +3,11 @@
 
 #include "solver/error.hpp"
 #include "solver/flows/discrete_curvature.hpp"
-#include "solver/flows/regularity.hpp"
 
 namespace esfem {
 
-DziukFlow::DziukFlow(const SurfaceSpace& space)
-    : space_(space), M_(space.matrix()), A_(space.matrix()), cholesky_(space.pattern()) {}
+DziukFlow::DziukFlow(const SurfaceSpace& space, const RegularityLimits& limits)
+    : space_(space), limits_(limits), M_(space.matrix()), A_(space.matrix()), cholesky_(space.pattern()) {}
 
 void DziukFlow::step(const History<State>& history, int q, double tau, State& next) {
   const double delta_0 = history.delta(q)[0];
@@ -25,7 +24,7 @@ void DziukFlow::step(const History<State>& history, int q, double tau, State& ne
   cholesky_.solve(next.x);
 
   next.v = (delta_0 * next.x + sum_) / tau;
-  require_regular(space_, next.x, next.v);
+  require_regular(space_, next.x, next.v, limits_);
 }
 
 std::string dziuk_warning(int q) {

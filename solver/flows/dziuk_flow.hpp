@@ -5,6 +5,7 @@
 
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/exact_evolution.hpp"
+#include "solver/flows/regularity.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
@@ -34,7 +35,7 @@ class DziukFlow {
   };
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
-  explicit DziukFlow(const SurfaceSpace& space);
+  explicit DziukFlow(const SurfaceSpace& space, const RegularityLimits& limits = {});
 
   /// One step with BDF of order q: fills next.x and next.v. Throws SingularityError where the surface is
   /// singular or no longer resolved (regularity.hpp).
@@ -42,6 +43,7 @@ class DziukFlow {
 
  private:
   const SurfaceSpace& space_;
+  RegularityLimits limits_;
   SymmetricMatrix M_, A_;
   SparseCholesky cholesky_;
   Field x_tilde_, sum_;

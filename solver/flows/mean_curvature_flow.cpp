@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/mean_curvature_flow.hpp"
 
-#include "solver/flows/regularity.hpp"
-
 namespace esfem {
 
 namespace {
@@ -34,22 +32,29 @@ struct MeanCurvatureLoads {
 
 }  // namespace
 
-MeanCurvatureFlow::MeanCurvatureFlow(const SurfaceSpace& space, Variant variant)
+MeanCurvatureFlow::MeanCurvatureFlow(const SurfaceSpace& space, Variant variant,
+                                     const RegularityLimits& limits)
     : space_(space),
       variant_(variant),
+      limits_(limits),
       mass_factor_(1 / (space.length() * space.length())),
       M_(space.matrix()),
       A_(space.matrix()),
-      cholesky_(space.pattern()) {}
+      cholesky_(space.pattern()),
+      reinitialisation_(space, variant.reinitialise, {}) {}
 
-void MeanCurvatureFlow::velocity(Field& v) {
+void MeanCurvatureFlow::velocity(const Field& u, Field& v) {
   if (variant_.velocity == Variant::interpolation) {
-    v = interpolated_velocity(u_tilde_);
+    v = interpolated_velocity(u);
     return;
   }
   v = loads_.leftCols(3);
   cholesky_.factorise(mass_factor_, M_, 1.0, A_);
   cholesky_.solve(v);
+}
+
+void MeanCurvatureFlow::Fields::complete(State& state) const {
+  state.v = interpolated_velocity(state.u);
 }
 
 void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, State& next) {
@@ -60,11 +65,12 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   history.extrapolate(q, &State::u, u_tilde_);
 
   assemble_regular(space_, x_tilde_, M_, A_);
-  space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, MeanCurvatureLoads{variant_.stabilise, mass_factor_},
-                                loads_);
+  const MeanCurvatureLoads loads{variant_.stabilise, mass_factor_};
+  space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, loads, loads_);
 
   // (5.1), first line: K(x̃) v = g(x̃, ũ)
-  velocity(next.v);
+  const bool u_follows_x = variant_.reinitialise > 0;
+  if (!u_follows_x) velocity(u_tilde_, next.v);
 
   // (5.1), second line: (delta_0/tau M(x̃) + A(x̃)) u = f(x̃, ũ) - M(x̃) 1/tau sum_{j>=1} delta_j u^{n-j}
   history.bdf_sum(q, &State::u, sum_);
@@ -74,11 +80,17 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   cholesky_.solve(next.u);
   if (variant_.normalise) next.u.leftCols(3).rowwise().normalize();
 
+  // Where ũ comes from the surface, a step with it would be explicit in x, and stable for tau < c h² alone.
+  if (u_follows_x) {
+    space_.assemble_load<4, 7, 3>(x_tilde_, next.u, loads, loads_);
+    velocity(next.u, next.v);
+  }
+
   // (5.1), third line: delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
   history.bdf_sum(q, &State::x, sum_);
   next.x = (tau * next.v - sum_) / delta_0;
-  require_regular(space_, next.x, next.u.col(3));
-  require_normal(next.u.leftCols(3));
+  require_regular(space_, next.x, next.u.col(3), limits_);
+  require_normal(next.x, next.u.leftCols(3), limits_);
 }
 
 MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu, const Field& H) {

@@ -3,6 +3,8 @@
 
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/exact_evolution.hpp"
+#include "solver/flows/regularity.hpp"
+#include "solver/flows/reinitialisation.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
@@ -22,6 +24,9 @@ class MeanCurvatureFlow {
     enum Velocity { ritz, interpolation } velocity = ritz;
     bool normalise = false;  ///< rescale nu_h to unit length at every node after each step (§13.2)
     double stabilise = 0;    ///< alpha >= 0 of the term -alpha int (nu_h - nu_Gamma_h) . phi of §14; 1/time
+    /// Tolerance of nu and H, see Reinitialisation; 0: they are never taken from the surface. Otherwise v
+    /// belongs to the new u, not to the extrapolated one.
+    double reinitialise = 0;
   };
 
   struct State {
@@ -33,20 +38,34 @@ class MeanCurvatureFlow {
   };
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
-  MeanCurvatureFlow(const SurfaceSpace& space, Variant variant);
+  MeanCurvatureFlow(const SurfaceSpace& space, Variant variant, const RegularityLimits& limits = {});
 
   /// One step of (5.1) with BDF of order q: fills next.x, next.v and next.u. Throws SingularityError where
   /// the surface is singular or no longer resolved (regularity.hpp).
   void step(const History<State>& history, int q, double tau, State& next);
 
+  /// Takes nu and H from the surface when they differ from it by more than the variant's tolerance.
+  void reinitialise(State& state) { reinitialisation_.apply(state); }
+  /// The same for a new state and, then, those of its history; the time loop calls it after each step.
+  void settle(History<State>& past, State& next) { reinitialisation_.apply(past, next); }
+
  private:
-  void velocity(Field& v);
+  /// How Reinitialisation sees u.
+  struct Fields {
+    static auto nu(State& state) { return state.u.leftCols(3); }
+    static auto H(State& state) { return state.u.col(3); }
+    void complete(State& state) const;
+  };
+
+  void velocity(const Field& u, Field& v);
 
   const SurfaceSpace& space_;
   Variant variant_;
+  RegularityLimits limits_;
   double mass_factor_;  ///< 1/L²
   SymmetricMatrix M_, A_;
   SparseCholesky cholesky_;
+  Reinitialisation<State, Fields> reinitialisation_;
   Field x_tilde_, u_tilde_, loads_, sum_, M_sum_;
 };
 

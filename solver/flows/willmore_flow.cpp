@@ -3,7 +3,6 @@
 
 #include "solver/error.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
-#include "solver/flows/regularity.hpp"
 #include "solver/flows/willmore_terms.hpp"
 #include "solver/linalg/gmres.hpp"
 #include "solver/linalg/sparse_cholesky.hpp"
@@ -103,13 +102,16 @@ struct WillmoreFlow::ImplicitCoupling {
   }
 };
 
-WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field theta)
+WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field theta,
+                           const RegularityLimits& limits)
     : space_(space),
       variant_(variant),
+      limits_(limits),
       theta_(std::move(theta)),
       M_(space.matrix()),
       A_(space.matrix()),
-      lagged_(space) {
+      lagged_(space),
+      reinitialisation_(space, variant.reinitialise, {space, variant.law}) {
   if (!(variant.relaxation >= 0))
     throw InputError(format("relaxation: found %g, expected a number >= 0", variant.relaxation));
   if (variant.F == Variant::implicit) implicit_ = std::make_unique<ImplicitCoupling>();
@@ -150,8 +152,8 @@ void WillmoreFlow::step(const History<State>& history, int q, double tau, State&
   next.v = interpolated_velocity(next.u, next.w);
   history.bdf_sum(q, &State::x, sum_);
   next.x = (tau * next.v - sum_) / delta_0;
-  require_regular(space_, next.x, next.u.col(0));
-  require_normal(next.u.rightCols(3));
+  require_regular(space_, next.x, next.u.col(0), limits_);
+  require_normal(next.x, next.u.rightCols(3), limits_);
 }
 
 namespace {
@@ -178,6 +180,12 @@ WillmoreStart start_from(const SurfaceSpace& space, const Field& x, Field u, Fie
 }
 
 }  // namespace
+
+void WillmoreFlow::Fields::complete(State& state) const {
+  const double t = state.t;
+  state = start_from(space, state.x, state.u, {}, law).state;
+  state.t = t;
+}
 
 WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x, Law law,
                                 bool with_theta) {

@@ -5,6 +5,8 @@
 
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/lagged_block_solver.hpp"
+#include "solver/flows/regularity.hpp"
+#include "solver/flows/reinitialisation.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "solver/time/history.hpp"
@@ -33,6 +35,8 @@ class WillmoreFlow {
     /// explicitly: lambda tau <= 0.5 is stable on surfaces that tend to a sphere of radius one, 0.2 on tori
     /// of that size.
     double relaxation = 0;
+    /// Tolerance of nu and H, see Reinitialisation; 0: they are never taken from the surface.
+    double reinitialise = 0;
   };
 
   struct State {
@@ -47,12 +51,18 @@ class WillmoreFlow {
 
   /// The space gives elements, degree and quadrature; it must outlive the flow. theta (N x 4): the correction
   /// of (3.7), see willmore_theta; none when it is empty.
-  WillmoreFlow(const SurfaceSpace& space, Variant variant, Field theta = {});
+  WillmoreFlow(const SurfaceSpace& space, Variant variant, Field theta = {},
+               const RegularityLimits& limits = {});
   ~WillmoreFlow();
 
   /// One step of (3.4)-(3.5) with BDF of order q: fills next.x, next.v, next.u and next.w. Throws
   /// SingularityError where the surface is singular or no longer resolved (regularity.hpp).
   void step(const History<State>& history, int q, double tau, State& next);
+
+  /// Takes nu, H, V and z from the surface when nu and H differ from it by more than the variant's tolerance.
+  void reinitialise(State& state) { reinitialisation_.apply(state); }
+  /// The same for a new state and, then, those of its history; the time loop calls it after each step.
+  void settle(History<State>& past, State& next) { reinitialisation_.apply(past, next); }
 
   /// The number of factorisations so far: with extrapolated F it is smaller than that of the steps, because
   /// one serves several of them (LaggedBlockSolver).
@@ -65,12 +75,23 @@ class WillmoreFlow {
 
  private:
   struct ImplicitCoupling;
+  /// How Reinitialisation sees u; w comes from (3.5b).
+  struct Fields {
+    const SurfaceSpace& space;
+    Variant::Law law;
+    static auto nu(State& state) { return state.u.rightCols(3); }
+    static auto H(State& state) { return state.u.col(0); }
+    void complete(State& state) const;
+  };
+
   const SurfaceSpace& space_;
   Variant variant_;
+  RegularityLimits limits_;
   Field theta_;
   SymmetricMatrix M_, A_;
   LaggedBlockSolver lagged_;
   std::unique_ptr<ImplicitCoupling> implicit_;
+  Reinitialisation<State, Fields> reinitialisation_;
   Field x_tilde_, u_tilde_, w_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
 };
 

@@ -109,6 +109,7 @@ AdaptiveRun integrate_adaptive(Flow& flow, const AdaptiveGrid& grid, typename Fl
       const int n = done.n + 1;
       at_step(n, next.t, [&] {
         take_adaptive_step(flow, grid, past, controlled, done, difference, next);
+        settle(flow, past, next);
         observe(n, std::as_const(next));
       });
       past.push(next);

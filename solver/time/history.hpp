@@ -47,6 +47,10 @@ class History {
     require(j + 1, size());
     return states_[j];
   }
+  State& back(int j) {
+    require(j + 1, size());
+    return states_[j];
+  }
 
   /// Takes the contents of `next` as the newest state. `next` keeps Fields of the same size, whose values are
   /// stale: the storage of the oldest state, or a copy as long as the history is not full.

@@ -43,7 +43,7 @@ void check_finite(const State& state) {
     if (values.allFinite()) continue;
     for (Eigen::Index i = 0; i < values.rows(); ++i)
       if (!values.row(i).allFinite())
-        throw NumericsError(format("non-finite value of %s at node %td", field.name, i));
+        throw NumericsError(format("non-finite value of %s at node %td (counted from 1)", field.name, i + 1));
   }
 }
 
@@ -54,9 +54,25 @@ void at_step(int n, const double& t, Body&& body) {
     body();
   } catch (const SingularityError& error) {
     throw error.at(n, t);
+  } catch (const ExtinctionError& error) {
+    throw error.at(n, t);
   } catch (const NumericsError& error) {
     throw error.at(n, t);
   }
+}
+
+template <class Flow, class = void>
+struct Settles : std::false_type {};
+template <class Flow>
+struct Settles<Flow,
+               std::void_t<decltype(std::declval<Flow&>().settle(
+                   std::declval<History<typename Flow::State>&>(), std::declval<typename Flow::State&>()))>>
+    : std::true_type {};
+
+/// What a flow with settle(past, next) changes in a new state and those before it, between two steps.
+template <class Flow>
+void settle(Flow& flow, History<typename Flow::State>& past, typename Flow::State& next) {
+  if constexpr (Settles<Flow>::value) flow.settle(past, next);
 }
 
 /// Advances `past`, which has step size tau/K, from state n-1 to state n of the coarse grid; leaves that in
@@ -70,6 +86,7 @@ void take_substeps(Flow& flow, History<typename Flow::State>& past, int q, doubl
     try {
       flow.step(past, std::min(m, q), tau / K, next);
       check_finite(next);
+      settle(flow, past, next);
     } catch (const SingularityError&) {
       throw;
     } catch (const NumericsError& error) {
@@ -88,7 +105,7 @@ void take_substeps(Flow& flow, History<typename Flow::State>& past, int q, doubl
 template <class Flow>
 void find_starting_value(Flow& flow, const TimeGrid& grid,
                          const std::function<typename Flow::State(double t)>& exact_state, int n,
-                         const History<typename Flow::State>& past, History<typename Flow::State>& fine,
+                         History<typename Flow::State>& past, History<typename Flow::State>& fine,
                          typename Flow::State& next) {
   const double t = n * grid.tau;
   switch (grid.start.kind) {
@@ -98,6 +115,7 @@ void find_starting_value(Flow& flow, const TimeGrid& grid,
   case Start::cascade:
     next.t = t;
     flow.step(past, n, grid.tau, next);
+    settle(flow, past, next);
     break;
   case Start::substeps:
     take_substeps(flow, fine, grid.order, grid.tau, grid.start.substeps_per_step, n, next);
@@ -161,10 +179,10 @@ void until_end(Checkpoint* checkpoint, Body&& body) {
 /// that computes next (its t is set already, its Fields have the right size and stale values) from the q
 /// newest states by BDF of order q. exact_state(t) is needed for Start::exact with q > 1; without it that
 /// start is an InputError. NumericsErrors (of the observer too) are rethrown with step and time; a non-finite
-/// value in a new state is one too. With a checkpoint the run goes on where one that was stopped had saved
-/// its states (after the starting steps, that is), and observes the steps from there on: with the same
-/// numbers, as long as `step` depends on its arguments alone, or what an earlier step has left in the flow is
-/// restored by its resume(progress()).
+/// value in a new state is one too. A flow that has settle(past, next) may change both after each step. With
+/// a checkpoint the run goes on where one that was stopped had saved its states (after the starting steps,
+/// that is), and observes the steps from there on: with the same numbers, as long as `step` depends on its
+/// arguments alone, or what an earlier step has left in the flow is restored by its resume(progress()).
 template <class Flow, class Observer>
 void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
                const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe,
@@ -189,6 +207,7 @@ void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
         next.t = t;
         flow.step(past, grid.order, grid.tau, next);
         check_finite(next);
+        settle(flow, past, next);
         observe(n, std::as_const(next));
         past.push(next);
       });

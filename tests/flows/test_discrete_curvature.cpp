@@ -118,5 +118,39 @@ TEST_P(CurvatureOfEllipsoid, FollowsScalingAndReflectionOfTheSurface) {
 
 INSTANTIATE_TEST_SUITE_P(Degrees, CurvatureOfEllipsoid, testing::Values(1, 2, 3));
 
+/// The deviation of the exact nu and H in the nodes of a mesh on the surface.
+double deviation_of_exact(const Surface& surface, const Mesh& mesh) {
+  const SurfaceSpace space(mesh);
+  DiscreteCurvature curvature(space);
+  curvature.compute(mesh.nodes);
+  const Field u = mean_curvature_state_on(surface, mesh.nodes).u;
+  return curvature.deviation(u.leftCols(3), u.col(3));
+}
+
+// kappa of P1 surfaces does not converge, but smoothed over an edge length it does.
+TEST(DiscreteCurvature, DeviationOfTheExactFieldsConverges) {
+  const Surface surface = torus(2, 0.8);
+  for (int degree : {1, 2}) {
+    const double coarse = deviation_of_exact(surface, torus_mesh(2, 0.8, degree, 24, 12)),
+                 fine = deviation_of_exact(surface, torus_mesh(2, 0.8, degree, 48, 24));
+    EXPECT_LT(coarse, 0.1) << "P" << degree;
+    EXPECT_GT(order(coarse, fine), 0.8) << "P" << degree;
+  }
+}
+
+TEST(DiscreteCurvature, DeviationIsRelative) {
+  const Mesh mesh = sphere_mesh(3, 2, 2);
+  const SurfaceSpace space(mesh);
+  DiscreteCurvature curvature(space);
+  curvature.compute(mesh.nodes);
+  const Field nu = mesh.nodes / 3, H = Field::Constant(space.dofs(), 1, 2. / 3);
+  EXPECT_LT(curvature.deviation(nu, H), 0.01);
+  EXPECT_NEAR(curvature.deviation(nu, 1.3 * H), 0.3, 0.01);
+  EXPECT_NEAR(curvature.deviation(0.7 * nu, H), 0.3, 0.01);
+  EXPECT_NEAR(curvature.deviation(nu, -H), 2, 0.01);
+  EXPECT_LT(curvature.distance(curvature.nu(), curvature.H()), 1e-14);
+  EXPECT_NEAR(curvature.distance(nu, 1.3 * H), 0.3, 0.02);
+}
+
 }  // namespace
 }  // namespace esfem::test_discrete_curvature

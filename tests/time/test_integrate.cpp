@@ -124,7 +124,8 @@ TEST(Integrate, NonFiniteValuesAreErrorsWithStepAndTime) {
   BecomesNonFinite flow;
   flow.from = 0.55;
   EXPECT_THAT(failure(flow, {2, 0.1, 10, exact}),
-              AllOf(HasSubstr("step 6"), HasSubstr("t = 0.6"), HasSubstr("non-finite value of v at node 0")));
+              AllOf(HasSubstr("step 6"), HasSubstr("t = 0.6"),
+                    HasSubstr("non-finite value of v at node 1 (counted from 1)")));
   flow.from = 0.15;
   EXPECT_THAT(failure(flow, {3, 0.1, 10, {Start::substeps, 4}}),
               AllOf(HasSubstr("step 2"), HasSubstr("substep 2 of 4"), HasSubstr("non-finite")));
