@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "experiments/harness/command_line.hpp"
+#include "experiments/harness/evolve_advice.hpp"
 #include "experiments/harness/evolve_config.hpp"
 #include "experiments/harness/evolve_start.hpp"
 #include "experiments/harness/experiment.hpp"
@@ -109,7 +110,48 @@ struct Run {
   const SurfaceSpace& space;
   RunRecorder& recorder;
   Checkpoint* checkpoint;
+  std::string& remark;  ///< on the result, for the status: empty, or that nu and H are not the surface's
 };
+
+/// Whether the flow evolves nu and H: then they are not those of the discrete surface.
+bool evolves_curvature(const EvolveConfig& config) {
+  return config.flow == "mean_curvature" || config.flow == "willmore" || config.flow == "surface_diffusion";
+}
+
+bool is_mean_curvature_flow(const EvolveConfig& config) {
+  return config.flow == "mean_curvature" || config.flow == "dziuk" || config.flow == "bgn";
+}
+
+bool can_shrink_to_nothing(const EvolveConfig& config) {
+  return is_mean_curvature_flow(config) || config.flow == "coupled_diffusion";
+}
+
+/// Says once that nu and H of the flow are no longer those of the surface.
+void compare_curvature(const Run& run) {
+  if (!run.remark.empty() || !evolves_curvature(run.config)) return;
+  const auto found = run.recorder.compare_curvature();
+  if (!found || !have_parted(run.config, *found)) return;
+  run.remark = curvature_remark(*found, run.recorder.newest().t);
+  warn(run.remark + "; " + curvature_cure(run.config));
+}
+
+void look_at_first_step(const Run& run) {
+  if (run.config.flow != "bgn") return;
+  run.remark = sliding_remark(run.recorder.series());
+  warn(run.remark);
+}
+
+/// Throws ExtinctionError where a surface that shrinks will have no area left for the next step.
+void require_area(const Run& run) {
+  if (!can_shrink_to_nothing(run.config)) return;
+  const Series& series = run.recorder.series();
+  std::optional<double> end = extinction_time(series);
+  if (is_mean_curvature_flow(run.config)) {
+    const double latest = latest_end_of_mean_curvature_flow(series);
+    if (series.at("t").back() >= latest) end = latest;
+  }
+  if (end) throw ExtinctionError(extinction(*end, series));
+}
 
 /// What the series of a flow have beside those of its surface.
 template <class State>
@@ -120,6 +162,17 @@ void record_more(const Run& run, const CahnHilliardState& state) {
   series["mass"].push_back(state.Mu.sum());
   series["energy"].push_back(
       ginzburg_landau_energy(run.space, state.x, state.u, run.config.cahn_hilliard.epsilon));
+}
+
+/// The limits of a run; u is what diffuses on the surface at the start, where something does.
+RegularityLimits limits(const Run& run, const Field& u = {}) {
+  const auto& asked = run.config.limits;
+  RegularityLimits limits = limits_from_start(run.space, run.config.mesh.nodes);
+  if (asked.curvature_size) limits.curvature_size = *asked.curvature_size;
+  if (asked.radius_ratio) limits.radius_ratio = *asked.radius_ratio;
+  if (asked.normal_length) limits.normal_length = *asked.normal_length;
+  if (u.size() > 0) limits.field_size = 1e3 * u.cwiseAbs().maxCoeff();
+  return limits;
 }
 
 /// Integrates from `initial` and records every step. exact: the exact solution, where one is known.
@@ -133,6 +186,9 @@ void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactStat
   const auto observe = [&](int n, const State& state) {
     run.recorder.record(n, state.t, state.x, point_fields(state));
     record_more(run, state);
+    if (n == 1) look_at_first_step(run);
+    if (n % steps_between_comparisons == 0) compare_curvature(run);
+    require_area(run);
     if (terminal)
       std::fprintf(stderr, "\rstep %d, t = %g of %g%s", n, state.t, end, state.t >= end ? "\n" : "");
   };
@@ -164,11 +220,12 @@ void run_mean_curvature(const Run& run) {
   ExactState<State> exact_state;
   if (exact) exact_state = [&](double t) { return exact_mean_curvature_state(*exact, x0, t); };
   const std::optional<State> from_file = mean_curvature_state_in_file(config);
-  run_flow(MeanCurvatureFlow(run.space, config.mean_curvature), run,
-           from_file        ? *from_file
-           : config.surface ? mean_curvature_state_on(*config.surface, x0)
-                            : discrete_mean_curvature_state(run.space, x0),
-           exact_state);
+  State initial = from_file        ? *from_file
+                  : config.surface ? mean_curvature_state_on(*config.surface, x0)
+                                   : discrete_mean_curvature_state(run.space, x0);
+  MeanCurvatureFlow flow(run.space, config.mean_curvature, limits(run));
+  flow.reinitialise(initial);
+  run_flow(flow, run, initial, exact_state);
 }
 
 void run_dziuk(const Run& run) {
@@ -178,11 +235,11 @@ void run_dziuk(const Run& run) {
   ExactState<State> exact_state;
   if (exact) exact_state = [&](double t) { return exact_dziuk_state(*exact, x0, t); };
   warn(dziuk_warning(run.config.adaptive ? run.config.adaptive->order : run.config.grid.order));
-  run_flow(DziukFlow(run.space), run, dziuk_state_on(run.space, x0), exact_state);
+  run_flow(DziukFlow(run.space, limits(run)), run, dziuk_state_on(run.space, x0), exact_state);
 }
 
 void run_bgn(const Run& run) {
-  run_flow(BgnFlow(run.space), run, bgn_state_on(run.space, run.config.mesh.nodes), {});
+  run_flow(BgnFlow(run.space, limits(run)), run, bgn_state_on(run.space, run.config.mesh.nodes), {});
 }
 
 void run_growing_sphere(const Run& run) {
@@ -192,8 +249,9 @@ void run_growing_sphere(const Run& run) {
     return exact_growing_sphere_state(run.space, exact, run.config.mesh.nodes, t);
   };
   const GrowingSphereProblem problem(coupled.parameters, coupled.variant.law, coupled.coupling);
-  run_flow(CoupledDiffusion(run.space, problem, coupled.parameters, coupled.variant), run, exact_state(0),
-           exact_state);
+  const CoupledDiffusionState initial = exact_state(0);
+  run_flow(CoupledDiffusion(run.space, problem, coupled.parameters, coupled.variant, limits(run, initial.u)),
+           run, initial, exact_state);
 }
 
 void run_tumour_growth(const Run& run) {
@@ -202,7 +260,8 @@ void run_tumour_growth(const Run& run) {
   if (!initial)
     initial = tumour_growth_state(run.space, run.config.mesh.nodes, coupled.kinetics, coupled.disturbance,
                                   coupled.seed, run.config.disturbance_origin);
-  run_flow(CoupledDiffusion(run.space, TumourGrowth(coupled.kinetics), coupled.parameters, coupled.variant),
+  run_flow(CoupledDiffusion(run.space, TumourGrowth(coupled.kinetics), coupled.parameters, coupled.variant,
+                            limits(run, initial->u)),
            run, *initial, {});
 }
 
@@ -214,7 +273,9 @@ void run_willmore(const Run& run) {
     start = config.surface ? willmore_start_on(run.space, *config.surface, x0, config.willmore.law,
                                                config.willmore_theta)
                            : discrete_willmore_start(run.space, x0, config.willmore.law);
-  run_flow(WillmoreFlow(run.space, config.willmore, start->theta), run, start->state, {});
+  WillmoreFlow flow(run.space, config.willmore, start->theta, limits(run));
+  flow.reinitialise(start->state);
+  run_flow(flow, run, start->state, {});
 }
 
 void run_manufactured_cahn_hilliard(const Run& run) {
@@ -263,15 +324,22 @@ void run(const Run& run) {
   is_sphere ? run_growing_sphere(run) : run_tumour_growth(run);
 }
 
-/// Whether the flow evolves nu and H: then they are not those of the discrete surface.
-bool evolves_curvature(const EvolveConfig& config) {
-  return config.flow == "mean_curvature" || config.flow == "willmore" || config.flow == "surface_diffusion";
+/// How a run has ended that met an error: extinct where a surface that shrinks had no area left for the step.
+std::string end_of(const EvolveConfig& config, RunRecorder& recorder, const NumericsError& error) {
+  const bool extinct = dynamic_cast<const ExtinctionError*>(&error) != nullptr;
+  if (extinct || recorder.empty()) return error.what();
+  if (can_shrink_to_nothing(config)) {
+    if (const std::optional<double> end = extinction_time(recorder.series(), 3))
+      return extinction(*end, recorder.series()) + "; the next step: " + error.what();
+  }
+  return std::string(error.what()) + "; " + cure(config);
 }
 
 int evolve(const std::string& file, const json& origin) {
   const json config_json = read_json(file);
   const EvolveConfig config = evolve_config(config_json, file);
   for (const std::string& remark : config.mesh_remarks) warn(remark);
+  warn(thin_elements_remark(config.mesh, config_json.at("mesh").value("file", "")));
   const SurfaceSpace space(config.mesh, config.rule);
   const bool fourth_order = config.flow == "willmore" || config.flow == "surface_diffusion";
   SnapshotPlan plan = config.snapshots;
@@ -283,16 +351,23 @@ int evolve(const std::string& file, const json& origin) {
   warn(start_remark(config));
   if (evolves_curvature(config) && !config.surface && start_values(config, {"nu", "H"}).size() == 0)
     warn("no exact surface is given: nu and H at the start are computed on the discrete surface");
+  std::string remark;
+  if (checkpoint)
+    checkpoint->attach([&] { return json(remark); },
+                       [&](const json& saved) { remark = saved.get<std::string>(); });
+  const Run asked = {config, space, recorder, checkpoint ? &*checkpoint : nullptr, remark};
   try {
-    run({config, space, recorder, checkpoint ? &*checkpoint : nullptr});
+    run(asked);
   } catch (const NumericsError& error) {
+    const std::string status = end_of(config, recorder, error);
     if (!recorder.empty()) {
-      write(config, recorder, error.what(), config_json, origin);
+      write(config, recorder, status, config_json, origin);
       warn(format("what was computed up to t = %g is written", recorder.newest().t));
     }
-    throw;
+    throw NumericsError(status);
   }
-  write(config, recorder, "ok", config_json, origin);
+  compare_curvature(asked);
+  write(config, recorder, remark.empty() ? "ok" : "ok, but " + remark, config_json, origin);
   return exit_done;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/harness/evolve_config.hpp"
 
+#include <algorithm>
 #include <map>
 
 #include "experiments/harness/evolve_mesh.hpp"
@@ -26,6 +27,13 @@ double positive_or(const JsonReader& reader, const std::string& key, double othe
       format("%s: found %s = %g; expected a positive number", reader.where().c_str(), key.c_str(), value));
 }
 
+/// The order of BDF where none is given. With a higher one than 1 the nodes of Dziuk's scheme drift along
+/// surfaces that are rough, as meshes of files are, until elements degenerate (DziukFlow).
+int standard_order(const JsonReader& whole, const std::string& flow) {
+  const bool rough = flow == "dziuk" && !whole.has("surface");
+  return flow == "bgn" || rough ? 1 : 3;
+}
+
 /// Adaptive steps stand in the place of tau, steps and start.
 AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
   for (const char* key : {"tau", "steps", "start"}) {
@@ -36,7 +44,7 @@ AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
   reader.accept_only({"end_time", "tolerance", "first_step", "largest_step"});
   AdaptiveGrid grid;
   const int highest = flow == "bgn" ? 1 : 2;
-  grid.order = whole.integer_within("bdf", highest, 1, highest);
+  grid.order = whole.integer_within("bdf", std::min(highest, standard_order(whole, flow)), 1, highest);
   grid.end_time = reader.number("end_time");
   grid.tolerance = positive_or(reader, "tolerance", grid.tolerance);
   grid.first_step = positive_or(reader, "first_step", grid.first_step);
@@ -52,7 +60,7 @@ AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
 TimeGrid time_grid(const JsonReader& reader, const std::string& flow) {
   TimeGrid grid;
   const bool one_step = flow == "bgn";
-  grid.order = reader.integer_within("bdf", one_step ? 1 : 3, 1, one_step ? 1 : max_bdf_order);
+  grid.order = reader.integer_within("bdf", standard_order(reader, flow), 1, one_step ? 1 : max_bdf_order);
   grid.tau = reader.number("tau");
   grid.steps = reader.integer_within("steps", 0, 0, 100000000);
   if (!(grid.tau > 0)) {
@@ -73,7 +81,7 @@ Quadrature quadrature(const json& description, const std::string& where) {
 MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const std::string& where) {
   using Variant = MeanCurvatureFlow::Variant;
   const JsonReader reader(description, where);
-  reader.accept_only({"velocity", "normalise", "stabilise"});
+  reader.accept_only({"velocity", "normalise", "stabilise", "reinitialise"});
   Variant variant;
   if (reader.has("velocity")) {
     const std::string velocity = reader.text("velocity");
@@ -88,6 +96,7 @@ MeanCurvatureFlow::Variant mean_curvature_variant(const json& description, const
     throw InputError(
         format("%s: found stabilise = %g; expected a number >= 0", where.c_str(), variant.stabilise));
   }
+  if (reader.has("reinitialise")) variant.reinitialise = positive_or(reader, "reinitialise", 0);
   return variant;
 }
 
@@ -108,7 +117,7 @@ Value choice(const JsonReader& reader, const std::string& key, const std::map<st
 void read_willmore_variant(const json& description, const std::string& where, EvolveConfig& config) {
   using Variant = WillmoreFlow::Variant;
   const JsonReader reader(description, where);
-  reader.accept_only({"F", "project", "theta", "relaxation"});
+  reader.accept_only({"F", "project", "theta", "relaxation", "reinitialise"});
   Variant& variant = config.willmore;
   variant.law = config.flow == "willmore" ? Variant::willmore : Variant::surface_diffusion;
   variant.F = choice<Variant::Coupling>(
@@ -119,6 +128,7 @@ void read_willmore_variant(const json& description, const std::string& where, Ev
     throw InputError(
         format("%s: found relaxation = %g; expected a number >= 0", where.c_str(), variant.relaxation));
   }
+  if (reader.has("reinitialise")) variant.reinitialise = positive_or(reader, "reinitialise", 0);
   config.willmore_theta = reader.truth_or("theta", config.surface.has_value());
   if (config.willmore_theta && !config.surface)
     throw InputError(where + ": theta needs exact initial data; expected a \"surface\", or \"theta\": false");
@@ -203,6 +213,7 @@ void read_tumour_growth(const JsonReader& parameters, EvolveConfig::Coupled& cou
   kinetics.a = parameters.number_or("a", kinetics.a);
   kinetics.b = parameters.number_or("b", kinetics.b);
   kinetics.gamma = parameters.number_or("gamma", kinetics.gamma);
+  coupled.parameters.reaction_rate = kinetics.gamma;
   kinetics.delta = parameters.number_or("delta", kinetics.delta);
   coupled.disturbance = parameters.number_or("disturbance", coupled.disturbance);
   coupled.seed = parameters.integer_within("seed", coupled.seed, 0, 1000000);
@@ -225,6 +236,21 @@ EvolveConfig::Coupled coupled_problem(const JsonReader& reader, const EvolveConf
   if (reader.has("variant"))
     read_coupled_variant(JsonReader(reader.object("variant"), reader.where() + ": variant"), coupled);
   return coupled;
+}
+
+/// "limits": the bounds beyond which a run is singular.
+void read_limits(const JsonReader& reader, EvolveConfig& config) {
+  reader.accept_only({"curvature_size", "radius_ratio", "normal_length"});
+  const auto read = [&](const char* key, double low, std::optional<double>& limit) {
+    if (!reader.has(key)) return;
+    limit = reader.number(key);
+    if (!(*limit > low))
+      throw InputError(format("%s: found %s = %g; expected a number greater than %g", reader.where().c_str(),
+                              key, *limit, low));
+  };
+  read("curvature_size", 0, config.limits.curvature_size);
+  read("radius_ratio", -1, config.limits.radius_ratio);
+  read("normal_length", 1, config.limits.normal_length);
 }
 
 /// "every" and "times" of the output; they need "vtu".
@@ -256,12 +282,13 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
                      listed(known_flows));
   }
   reader.accept_only({"flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start", "quadrature",
-                      "variant", "output", "problem", "parameters", "adaptive"});
+                      "variant", "output", "problem", "parameters", "adaptive", "limits"});
   if (reader.has("adaptive"))
     config.adaptive = adaptive_grid(reader, config.flow);
   else
     config.grid = time_grid(reader, config.flow);
   config.start_given = reader.has("start");
+  if (reader.has("limits")) read_limits(JsonReader(reader.object("limits"), source + ": limits"), config);
   if (reader.has("output")) {
     const JsonReader output(reader.object("output"), source + ": output");
     output.accept_only({"nodal", "series", "vtu", "every", "times", "checkpoint"});

@@ -55,6 +55,9 @@ struct EvolveConfig {
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
   std::string checkpoint;           ///< a file from which a stopped run goes on; empty: not wanted
   SnapshotPlan snapshots;
+  struct {
+    std::optional<double> curvature_size, radius_ratio, normal_length;  ///< instead of the defaults
+  } limits;                                                             ///< see RegularityLimits
 };
 
 /// Reads a configuration and makes its mesh. Paths in it are relative to the working directory. Throws

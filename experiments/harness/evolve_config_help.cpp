@@ -37,7 +37,7 @@ std::string evolve_config_help() {
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
    "degree": 2,                               1..4; default of a file without "surface": its own, 1 where triangles are flat
                                               and not curved: nu and H of flat ones do not converge with higher degrees
-   "bdf": 3,                                  1..5; bgn: 1
+   "bdf": 3,                                  1..5; bgn: 1; default for dziuk without "surface": 1
    "tau": 0.05,                               step size (no default)
    "steps": 0,                                end time = steps tau; 0 writes the initial surface
    "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
@@ -48,13 +48,19 @@ std::string evolve_config_help() {
                 "largest_step": 0.01},        default: no bound
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere, angenent_torus), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
-   "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0},  mean_curvature
+   "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0, "reinitialise": 0.05},
+                                              mean_curvature; reinitialise: nu and H are taken anew from the surface when
+                                              H nu differs by more than this in L2 (default: never; see below)
             {"mass": "extrapolated" | "reassembled", "law": "regularised" | "dynamic",
              "coupling": "additive" | "quotient" | "none"},   coupled_diffusion; coupling: growing_sphere
-            {"F": "extrapolated" | "implicit", "project": true, "theta": true, "relaxation": 0},  willmore, surface_diffusion;
+            {"F": "extrapolated" | "implicit", "project": true, "theta": true, "relaxation": 0, "reinitialise": 0.05},
+                                              willmore, surface_diffusion; reinitialise: as for mean_curvature;
                                               theta: the correction (3.7), default false without "surface"; relaxation:
                                               1/time, towards the geometry of the surface, times tau at most 0.2
             {"theta": false, "initial": "interpolation" | "ritz"},  ellipsoid
+   "limits": {"curvature_size": 5,            singular is more |H| times edge than this (or 4 times that of the start),
+              "radius_ratio": 0.01,           an element's radius ratio below this (or the smallest of the start squared;
+              "normal_length": 4},            no limit where that is < 0.01), |nu| or 1/|nu| of a flow's nu beyond this
    "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
               "checkpoint": "run.checkpoint", the same command goes on from it when the run was stopped
@@ -80,7 +86,13 @@ willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface it
 energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as
 field data TimeValue, step, flow and configuration (this file; texts are arrays of bytes). Where the flow has no nu, max_H
 and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
-A run that meets a singularity writes what it has computed, says so, and ends with exit code 2.)";
+A run that meets a singularity, shrinks to nothing (extinct: its area, extrapolated, is zero within the next step, or
+below 1e-6 of the first, or an area A under mean curvature flow has lived for A/(16 pi), the longest possible), or in which
+u grows to 1000 times its first size writes what it has computed, says so, and ends with exit code 2. "status" of series is
+"ok", what has ended the run, or "ok, but ..": nu and H of a flow that evolves them are no longer those of the surface (H nu
+and kappa, smoothed over an edge length, differ by more than 25% in L2, or the rates of area int H nu . v and int kappa . v
+by more than 25% of ||H nu|| ||v||, or willmore_energy and kappa_energy by more than 25%, degree 1: 50%; looked at at the
+start, the end and every 50 steps), as on meshes that do not resolve the curvature; or, bgn, nodes have slid off edges.)";
 }
 
 }  // namespace esfem

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
+#include "solver/constants.hpp"
 #include "solver/linalg/least_squares.hpp"
 
 namespace esfem {
@@ -77,6 +79,24 @@ TorusRadii fitted_torus_radii(const Field& x) {
   terms << 2 * rho, Eigen::VectorXd::Ones(x.rows());
   const Eigen::Vector2d fit = least_squares(terms, centred.rowwise().squaredNorm());
   return {fit[0], std::sqrt(fit[1] + fit[0] * fit[0])};
+}
+
+std::optional<double> extinction_time(const Series& series, int steps) {
+  const std::vector<double>&t = series.at("t"), &area = series.at("area");
+  if (area.size() < 3) return {};
+  const std::size_t n = area.size() - 1;
+  const double tau = t[n] - t[n - 1], rate = (area[n - 1] - area[n]) / tau;
+  const double rate_before = (area[n - 2] - area[n - 1]) / (t[n - 1] - t[n - 2]);
+  const bool is_trend = rate <= 4 * rate_before && area[n] <= steps * tau * rate;
+  if (!(rate > 0) || !(is_trend || area[n] <= 1e-6 * area[0])) return {};
+  return t[n] + area[n] / rate;
+}
+
+double latest_end_of_mean_curvature_flow(const Series& series) {
+  const std::vector<double>&t = series.at("t"), &area = series.at("area");
+  double latest = std::numeric_limits<double>::infinity();
+  for (std::size_t n = 0; n < t.size(); ++n) latest = std::min(latest, t[n] + area[n] / (16 * pi));
+  return latest;
 }
 
 std::optional<double> pinch_time(const Series& series) {

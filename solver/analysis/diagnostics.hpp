@@ -40,6 +40,17 @@ struct TorusRadii {
 };
 TorusRadii fitted_torus_radii(const Field& x);
 
+/// The time at which a surface that shrinks has shrunk to a point or a line: where its area, extrapolated
+/// linearly from the last two steps, is zero; the area of a sphere under mean curvature flow is linear in
+/// time. Nothing as long as more than `steps` steps of the last one's size lead there, unless the area has
+/// come below 1e-6 of its first value.
+std::optional<double> extinction_time(const Series& series, int steps = 1);
+
+/// The time at which mean curvature flow of the surfaces of a series has come to its end at the latest: int
+/// H² is at least 16 pi for every closed surface (Willmore), so that an area A lives no longer than A/(16
+/// pi).
+double latest_end_of_mean_curvature_flow(const Series& series);
+
 /// The time at which the neck pinches: neck_radius² extrapolated to zero from the last three steps at which
 /// the neck still has a fifth of its first radius, by a parabola, or by a line through the last two where the
 /// parabola bends upwards. Nothing when the neck has not come below half of its first radius, or does not

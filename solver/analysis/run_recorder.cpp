@@ -2,6 +2,7 @@
 #include "solver/analysis/run_recorder.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solver/error.hpp"
 
@@ -58,6 +59,23 @@ void RunRecorder::write_newest() {
   fields.push_back({"kappa", curvature_.kappa()});
   snapshots_.push_back({newest_.t, collection_->add(newest_.step, newest_.t,
                                                     newest_.x.rowwise() + plan_.origin.transpose(), fields)});
+}
+
+double RunRecorder::CurvatureComparison::rate_difference() const {
+  return rates.scale > 0 ? std::abs(rates.of_surface - rates.of_fields) / rates.scale : 0;
+}
+
+double RunRecorder::CurvatureComparison::energy_difference() const {
+  return std::abs(energy - kappa_energy) / kappa_energy;
+}
+
+std::optional<RunRecorder::CurvatureComparison> RunRecorder::compare_curvature() {
+  const Field *nu = find(newest_.fields, "nu"), *H = find(newest_.fields, "H"),
+              *v = find(newest_.fields, "v");
+  if (!nu || !H || !v) return {};
+  curvature_.compute(newest_.x);
+  return CurvatureComparison{curvature_.deviation(*nu, *H), series_.at("willmore_energy").back(),
+                             curvature_.willmore_energy(), curvature_.area_rates(*nu, *H, *v)};
 }
 
 void RunRecorder::finish() {

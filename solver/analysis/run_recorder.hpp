@@ -47,6 +47,17 @@ class RunRecorder {
   /// Snapshots have kappa of the discrete surface, too, and its nu and H where the flow has none.
   void record(int n, double t, const Field& x, std::vector<PointField> fields);
 
+  /// What a flow's own nu and H say of the newest surface, and what the surface says of itself.
+  struct CurvatureComparison {
+    double deviation;             ///< DiscreteCurvature::deviation
+    double energy, kappa_energy;  ///< 1/2 int H², 1/2 int |kappa|²
+    DiscreteCurvature::AreaRates rates;
+    double rate_difference() const;    ///< of the rates of area, relative to their scale
+    double energy_difference() const;  ///< relative to kappa_energy
+  };
+  /// Compares them, where the flow has nu, H and v of its own; costs two factorisations.
+  std::optional<CurvatureComparison> compare_curvature();
+
   /// Writes the newest surface as the last snapshot, unless it is written.
   void finish();
 

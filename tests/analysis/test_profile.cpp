@@ -5,6 +5,7 @@
 
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/analysis/table.hpp"
+#include "solver/constants.hpp"
 #include "solver/mesh/generate.hpp"
 
 namespace esfem::test_profile {
@@ -86,6 +87,37 @@ TEST(PinchTime, IsNotThereWithoutAPinch) {
   EXPECT_TRUE(of({0.2, 0.09, 0.08, 0.06}));
   // Bent upwards: the line through the last two, here of slope -1 a step.
   EXPECT_NEAR(*of({2, std::sqrt(3.5), std::sqrt(1.5), std::sqrt(0.5)}), 0.035, 1e-12);
+}
+
+TEST(ExtinctionTime, IsWhereTheAreaOfTheNextStepIsNotPositive) {
+  const auto of = [](std::vector<double> area, int steps = 1) {
+    Series series;
+    for (double a : area) {
+      series["t"].push_back(0.5 * series["t"].size());
+      series["area"].push_back(a);
+    }
+    return extinction_time(series, steps);
+  };
+  EXPECT_FALSE(of({4}));
+  EXPECT_FALSE(of({4, 4}));
+  EXPECT_FALSE(of({4, 5})) << "grows";
+  EXPECT_FALSE(of({5, 4, 3, 2})) << "one more step";
+  EXPECT_EQ(*of({5, 4, 3, 2}, 2), 2.5) << "that of the line";
+  EXPECT_EQ(*of({3, 2, 1}), 1.5);
+  EXPECT_NEAR(*of({3, 2, 0.5}), 1 + 0.5 / 3, 1e-15);
+  EXPECT_FALSE(of({3, 1})) << "too few";
+  EXPECT_FALSE(of({3, 2.9, 1})) << "a jump";
+  // Small steps: the area halves no more, but nothing is left.
+  EXPECT_FALSE(of({1, 4e-6, 3e-6}));
+  EXPECT_TRUE(of({1, 1.1e-6, 9e-7}));
+}
+
+TEST(LatestEnd, OfMeanCurvatureFlowIsThatOfTheSphereOfTheArea) {
+  const double a = 16 * pi;  // of the sphere of radius 2, which lives for a time of 1
+  EXPECT_DOUBLE_EQ(latest_end_of_mean_curvature_flow({{"t", {0}}, {"area", {a}}}), 1);
+  EXPECT_DOUBLE_EQ(latest_end_of_mean_curvature_flow({{"t", {0, 0.5}}, {"area", {a, a / 2}}}), 1);
+  EXPECT_DOUBLE_EQ(latest_end_of_mean_curvature_flow({{"t", {0, 0.5, 0.6}}, {"area", {2 * a, a / 4, a / 4}}}),
+                   0.75);
 }
 
 }  // namespace

@@ -57,6 +57,35 @@ TEST_F(RunRecorderOnASphere, TheEnergyOfTheSurfaceIsNotThatOfTheFlowsOwnCurvatur
   EXPECT_NEAR(recorder.series()["kappa_energy"][0], 8 * pi, 0.1);
 }
 
+TEST_F(RunRecorderOnASphere, ComparesTheFlowsOwnCurvatureWithThatOfTheSurface) {
+  const SurfaceSpace space(mesh);
+  const Field &x = mesh.nodes, H = Field::Constant(space.dofs(), 1, 2);
+  const auto compared = [&](double length, double factor) {
+    RunRecorder recorder(space, {});
+    recorder.record(0, 0, x, {{"v", -2 * x}, {"nu", length * x}, {"H", factor * H}});
+    return *recorder.compare_curvature();
+  };
+  const auto right = compared(1, 1);
+  EXPECT_LT(right.deviation, 0.01);
+  EXPECT_LT(right.rate_difference(), 0.01);
+  EXPECT_LT(right.energy_difference(), 0.01);
+  EXPECT_NEAR(right.energy, 8 * pi, 0.05);
+  EXPECT_NEAR(right.kappa_energy, 8 * pi, 0.1);
+  EXPECT_NEAR(right.rates.of_surface, -16 * pi, 0.1);
+  EXPECT_NEAR(right.rates.of_fields, -16 * pi, 0.1);
+  EXPECT_NEAR(right.rates.scale, 16 * pi, 0.1);
+  // H too small, or nu too short, by a third.
+  for (const auto& found : {compared(1, 2. / 3), compared(2. / 3, 1)}) {
+    EXPECT_NEAR(found.deviation, 1. / 3, 0.01);
+    EXPECT_NEAR(found.rate_difference(), 0.5, 0.01) << "relative to that of the fields";
+  }
+  EXPECT_NEAR(compared(1, 2. / 3).energy_difference(), 5. / 9, 0.01);
+
+  RunRecorder without(space, {});
+  without.record(0, 0, x, {{"v", -2 * x}});
+  EXPECT_FALSE(without.compare_curvature());
+}
+
 TEST_F(RunRecorderOnASphere, WritesSnapshotsAsPlanned) {
   const SurfaceSpace space(mesh);
   const auto run = [&](SnapshotPlan plan) {

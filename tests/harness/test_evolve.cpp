@@ -92,10 +92,10 @@ TEST_F(Evolve, VariantsChangeTheResult) {
   EXPECT_EQ(read_json(nodal).at("x"), plain);
 }
 
-TEST_F(Evolve, StopsAtTheSingularityAndKeepsWhatItHas) {
+TEST_F(Evolve, StopsAtTheEndOfTheSurfaceAndKeepsWhatItHas) {
   // The unit sphere shrinks to a point at t = 0.25.
   EXPECT_EQ(run(config({{"steps", 60}, {"start", "cascade"}})), exit_numerics);
-  EXPECT_THAT(message, HasSubstr("singular"));
+  EXPECT_THAT(message, HasSubstr("extinct at t = 0.2"));
   EXPECT_THAT(message, HasSubstr("step "));
   const json history = read_json(series);
   const double last = history.at("t").back().get<double>();
@@ -312,7 +312,7 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"flow", "willmore"}, {"variant", {{"F", "explicit"}}}}, "extrapolated, implicit"},
       {{{"flow", "willmore"}, {"variant", {{"relaxation", -1}}}}, "relaxation = -1"},
       {{{"flow", "surface_diffusion"}, {"variant", {{"normalise", true}}}},
-       "known are F, project, relaxation, theta"},
+       "known are F, project, reinitialise, relaxation, theta"},
       {{{"flow", "cahn_hilliard"}, {"parameters", {{"epsilon", 0}}}}, "epsilon = 0"},
       {{{"flow", "cahn_hilliard"}, {"variant", {{"initial", "exact"}}}}, "interpolation, ritz"},
       {{{"flow", "cahn_hilliard"}, {"problem", "sphere"}}, "ellipsoid, phase_separation"},
