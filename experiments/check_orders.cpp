@@ -152,6 +152,7 @@ int run(int argc, char** argv) {
   line.text("--reference", folder, "folder of the claims");
   line.text("--output", output, "the verdicts as JSON, beside what is printed");
   if (!line.parse(argc, argv)) return exit_done;
+  if (!output.empty()) prepare_output(output);
 
   Count total;
   nlohmann::json verdicts = nlohmann::json::array();

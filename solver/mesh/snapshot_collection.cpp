@@ -55,10 +55,9 @@ SnapshotCollection::SnapshotCollection(std::string pvd, int degree, Connectivity
   if (visible != pvd_)
     throw InputError("'" + visible +
                      "': a name of visible characters expected for a collection of snapshots");
-  std::error_code error;
-  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-  if (error)
-    throw InputError(path.parent_path().string() + ": this folder cannot be made: " + error.message());
+  prepare_output(pvd_);
+  remove_abandoned(path.parent_path().string(),
+                   [&](const std::string& file) { return is_snapshot_name(file, path.stem().string()); });
 }
 
 std::string SnapshotCollection::add(int n, double t, const Field& x, const std::vector<PointField>& fields) {
@@ -88,7 +87,7 @@ void SnapshotCollection::resume(std::vector<std::pair<double, std::string>> snap
   const fs::path folder = fs::path(pvd_).parent_path();
   for (const auto& [t, name] : snapshots)
     if (!fs::is_regular_file(folder / name))
-      throw InputError(format("%s: the snapshot at t = %g is missing", (folder / name).c_str(), t));
+      throw InputError(format("%s, the snapshot at t = %g, is missing", (folder / name).c_str(), t));
   if (!snapshots.empty()) write_file(pvd_, pvd_text(snapshots));
   snapshots_ = std::move(snapshots);
   others_removed_ = false;

@@ -14,7 +14,8 @@ namespace esfem {
 /// has left are removed when the first snapshot is written, or the first one after `resume`.
 class SnapshotCollection {
  public:
-  /// Folders that are missing are made. Throws InputError when `pvd` does not end in ".pvd".
+  /// Folders that are missing are made. Throws InputError when `pvd` does not end in ".pvd" or cannot be
+  /// written.
   SnapshotCollection(std::string pvd, int degree, Connectivity elements, RunLabel run = {});
 
   /// Writes step n at time t as the next snapshot and returns its file name without the folder. Errors as
