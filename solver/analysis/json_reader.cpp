@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/analysis/json_reader.hpp"
 
+#include <cmath>
+#include <limits>
 #include <utility>
 
 #include "solver/error.hpp"
@@ -50,6 +52,10 @@ bool JsonReader::truth_or(const std::string& key, bool otherwise) const {
 int JsonReader::integer(const std::string& key) const {
   const Json& value = at(key);
   if (!value.is_number_integer()) wrong_type(key, "an integer", value);
+  const double exact = value, bound = std::numeric_limits<int>::max();
+  if (std::abs(exact) > bound)
+    throw InputError(format("%s: key '%s': found %.17g, expected an integer of size %.10g at most",
+                            where_.c_str(), key.c_str(), exact, bound));
   return value;
 }
 

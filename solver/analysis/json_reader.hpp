@@ -25,6 +25,7 @@ class JsonReader {
   }
   bool truth_or(const std::string& key, bool otherwise) const;
   bool is_object(const std::string& key) const { return has(key) && json_[key].is_object(); }
+  /// One that an int can hold.
   int integer(const std::string& key) const;
   /// An integer between low and high; `otherwise` where the key is not there.
   int integer_within(const std::string& key, int otherwise, int low, int high) const;

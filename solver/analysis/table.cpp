@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/analysis/table.hpp"
 
-#include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <set>
 
@@ -169,10 +163,6 @@ Fit fit_from_json(const Json& json, const std::string& where) {
   return fit;
 }
 
-std::string reason() {
-  return std::strerror(errno);
-}
-
 }  // namespace
 
 bool failed(const Row& row) {
@@ -227,20 +217,6 @@ Table table_from_json(const Json& json, const std::string& source) {
   for (const Json& item : reader.array("fits"))
     table.fits.push_back(fit_from_json(item, format("%s, fit %zu", source.c_str(), table.fits.size() + 1)));
   return table;
-}
-
-Json read_json(const std::string& file) {
-  if (std::filesystem::is_directory(file)) throw InputError(file + ": cannot be read: is a directory");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file + ": cannot be read: " + reason());
-  const std::string content((std::istreambuf_iterator<char>(stream)), std::istreambuf_iterator<char>());
-  try {
-    return Json::parse(content);
-  } catch (const Json::parse_error& error) {
-    const std::size_t position = std::min<std::size_t>(error.byte, content.size());
-    const auto line = 1 + std::count(content.begin(), content.begin() + position, '\n');
-    throw InputError(format("%s, line %td: not JSON: %s", file.c_str(), line, error.what()));
-  }
 }
 
 }  // namespace esfem

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/read_json.hpp"
 #include "solver/write_file.hpp"
 
 namespace esfem {
@@ -65,9 +66,6 @@ nlohmann::json to_json(const Table& table);
 /// Throws InputError naming `source`, the row and the key when something is missing, of the wrong type or
 /// another schema. null in errors and series is read as NaN (errors: in failed rows only).
 Table table_from_json(const nlohmann::json& json, const std::string& source);
-
-/// Reads and parses a JSON file; InputError with file and line when it is missing or not JSON.
-nlohmann::json read_json(const std::string& file);
 
 /// The table as CSV (one line a row, one column an error), and as LaTeX (booktabs) with EOC columns as the
 /// papers print them: one block per mesh with EOC in tau between neighbouring step sizes, and one per step
