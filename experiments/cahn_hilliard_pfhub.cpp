@@ -32,7 +32,6 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/pfhub_sphere.hpp"
@@ -316,7 +315,7 @@ Row run_cell(const Run& run, Row row, const std::string& folder) {
   const Observe observe = [&](int n, const State& state) { observer(n, state); };
   row.status = run_to_end(
       [&] { integrate_run(run, flow, start, observe, checkpoint ? &*checkpoint : nullptr, row); }, recorder);
-  if (checkpoint) warn(checkpoint->remark());
+  if (checkpoint) row.seconds = checkpoint->seconds_before();
 
   // 4. The row of the table.
   describe_run(recorder, row);

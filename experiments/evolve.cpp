@@ -9,18 +9,24 @@
 //
 // Writes the nodal values at the end, a time series and snapshots, as the file says; `evolve --help` explains
 // its keys.
+#include <signal.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <optional>
 
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/evolve_advice.hpp"
 #include "experiments/harness/evolve_config.hpp"
+#include "experiments/harness/evolve_files.hpp"
 #include "experiments/harness/evolve_start.hpp"
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/library_environment.hpp"
 #include "experiments/harness/provenance.hpp"
+#include "experiments/harness/stop_signal.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/analysis/table.hpp"
@@ -52,25 +58,53 @@ json rows(const Matrix& field) {
   return list;
 }
 
-void write(const EvolveConfig& config, RunRecorder& recorder, const std::string& status,
-           const json& config_json, const json& origin) {
-  if (!config.series.empty()) {
-    json series = recorder.series();
-    series["status"] = status;
-    series["config"] = config_json;
-    series["provenance"] = origin;
-    write_file(config.series, series.dump(1) + "\n");
-  }
-  if (!config.nodal.empty()) {
-    const RunRecorder::Surface& newest = recorder.newest();
-    const Field x = newest.x.rowwise() + config.origin.transpose();
-    json nodal = {{"t", newest.t}, {"x", rows(x)}, {"config", config_json}, {"provenance", origin}};
-    for (const PointField& field : newest.fields) nodal[field.name] = rows(field.values);
-    nodal["elements"] = rows(config.mesh.elements);
-    if (!config.node_numbers.empty()) nodal["node_numbers"] = config.node_numbers;
-    write_file(config.nodal, nodal.dump() + "\n");
-  }
-  recorder.finish();
+void write_series(const EvolveConfig& config, RunRecorder& recorder, const std::string& status,
+                  const json& config_json, const json& origin) {
+  json series = recorder.series();
+  series["status"] = status;
+  series["config"] = config_json;
+  series["provenance"] = origin;
+  write_file(config.series, series.dump(1) + "\n");
+}
+
+void write_nodal(const EvolveConfig& config, const RunRecorder& recorder, const json& config_json,
+                 const json& origin) {
+  const RunRecorder::Surface& newest = recorder.newest();
+  const Field x = newest.x.rowwise() + config.origin.transpose();
+  json nodal = {{"t", newest.t}, {"x", rows(x)}, {"config", config_json}, {"provenance", origin}};
+  for (const PointField& field : newest.fields) nodal[field.name] = rows(field.values);
+  nodal["elements"] = rows(config.mesh.elements);
+  if (!config.node_numbers.empty()) nodal["node_numbers"] = config.node_numbers;
+  write_file(config.nodal, nodal.dump() + "\n");
+}
+
+/// Writes all that is asked for; what cannot be written keeps nothing else from it. Returns `failures` with
+/// what could not be written.
+std::vector<std::string> write(const EvolveConfig& config, RunRecorder& recorder, const std::string& status,
+                               const json& config_json, const json& origin,
+                               std::vector<std::string> failures = {}) {
+  const auto attempt = [&](auto&& action) {
+    try {
+      action();
+    } catch (const InputError& error) {
+      if (std::find(failures.begin(), failures.end(), error.what()) == failures.end())
+        failures.push_back(error.what());
+    }
+  };
+  if (!config.series.empty()) attempt([&] { write_series(config, recorder, status, config_json, origin); });
+  if (!config.nodal.empty()) attempt([&] { write_nodal(config, recorder, config_json, origin); });
+  attempt([&] { recorder.finish(); });
+  return failures;
+}
+
+/// The failures of `write` in one line, with what is left to do.
+std::string joined(const std::vector<std::string>& failures, const EvolveConfig& config) {
+  std::string text;
+  for (const std::string& failure : failures) text += (text.empty() ? "" : "; ") + failure;
+  std::error_code ignored;
+  if (!config.checkpoint.empty() && std::filesystem::exists(config.checkpoint, ignored))
+    text += "; the same command goes on from " + config.checkpoint;
+  return text;
 }
 
 template <class State>
@@ -94,12 +128,11 @@ std::vector<double> units_of_controlled(const WillmoreFlow::State&, double L) {
   return {1 / L, 1, 1, 1};
 }
 
-/// What the numbers of a run depend on beside its initial state and time grid.
 std::optional<Checkpoint> checkpoint_of(const EvolveConfig& config, const json& config_json,
                                         RunRecorder& recorder) {
   if (config.checkpoint.empty()) return {};
   std::optional<Checkpoint> checkpoint =
-      Checkpoint(config.checkpoint, {{"config", config_json}, {"build", build_identity()}});
+      Checkpoint(config.checkpoint, run_identity(config, config_json), checkpoint_seconds(), warn);
   attach(*checkpoint, recorder);
   return checkpoint;
 }
@@ -189,9 +222,12 @@ void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactStat
     if (n == 1) look_at_first_step(run);
     if (n % steps_between_comparisons == 0) compare_curvature(run);
     require_area(run);
+    if (!config.adaptive && n == grid.steps) run.recorder.finish();
     if (terminal)
       std::fprintf(stderr, "\rstep %d, t = %g of %g%s", n, state.t, end, state.t >= end ? "\n" : "");
+    return stop_signal() == 0;
   };
+  note_stop_signals();
   if (config.adaptive) {
     AdaptiveGrid adaptive = *config.adaptive;
     adaptive.units = units_of_controlled(initial, run.space.length());
@@ -199,7 +235,6 @@ void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactStat
   } else {
     integrate(flow, grid, initial, exact, observe, run.checkpoint);
   }
-  if (run.checkpoint) warn(run.checkpoint->remark());
 }
 
 /// A sphere and the self-shrinking torus have exact solutions under mean curvature flow.
@@ -335,9 +370,16 @@ std::string end_of(const EvolveConfig& config, RunRecorder& recorder, const Nume
   return std::string(error.what()) + "; " + cure(config);
 }
 
+/// How a run that a signal has stopped ends.
+std::string stopped_status(const RunRecorder& recorder) {
+  return format("stopped by signal %s at t = %g (step %d)", stop_signal() == SIGINT ? "SIGINT" : "SIGTERM",
+                recorder.newest().t, recorder.newest().step);
+}
+
 int evolve(const std::string& file, const json& origin) {
   const json config_json = read_json(file);
   const EvolveConfig config = evolve_config(config_json, file);
+  prepare_outputs(config, config_json, file);
   for (const std::string& remark : config.mesh_remarks) warn(remark);
   warn(thin_elements_remark(config.mesh, config_json.at("mesh").value("file", "")));
   const SurfaceSpace space(config.mesh, config.rule);
@@ -356,18 +398,30 @@ int evolve(const std::string& file, const json& origin) {
     checkpoint->attach([&] { return json(remark); },
                        [&](const json& saved) { remark = saved.get<std::string>(); });
   const Run asked = {config, space, recorder, checkpoint ? &*checkpoint : nullptr, remark};
+  std::vector<std::string> failures;
   try {
     run(asked);
+    compare_curvature(asked);
+    failures = write(config, recorder, remark.empty() ? "ok" : "ok, but " + remark, config_json, origin);
   } catch (const NumericsError& error) {
     const std::string status = end_of(config, recorder, error);
     if (!recorder.empty()) {
-      write(config, recorder, status, config_json, origin);
-      warn(format("what was computed up to t = %g is written", recorder.newest().t));
+      failures = write(config, recorder, status, config_json, origin);
+      warn(failures.empty() ? format("what was computed up to t = %g is written", recorder.newest().t)
+                            : joined(failures, config));
     }
     throw NumericsError(status);
+  } catch (const StoppedError&) {
+    const std::string status = stopped_status(recorder);
+    failures = write(config, recorder, status, config_json, origin);
+    failures.insert(failures.begin(), status);
+    throw StoppedError(joined(failures, config));
+  } catch (const InputError& error) {
+    if (recorder.empty()) throw;
+    failures = write(config, recorder, format("stopped at t = %g: %s", recorder.newest().t, error.what()),
+                     config_json, origin, {error.what()});
   }
-  compare_curvature(asked);
-  write(config, recorder, remark.empty() ? "ok" : "ok, but " + remark, config_json, origin);
+  if (!failures.empty()) throw InputError(joined(failures, config));
   return exit_done;
 }
 

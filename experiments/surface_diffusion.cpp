@@ -31,7 +31,6 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
@@ -210,7 +209,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   row.status = run_to_end(
       [&] { integrate_run(setting, run, start, flow, observe, checkpoint ? &*checkpoint : nullptr, row); },
       recorder);
-  if (checkpoint) warn(checkpoint->remark());
+  if (checkpoint) row.seconds = checkpoint->seconds_before();
 
   // 4. The row of the table.
   describe_run(recorder, row);

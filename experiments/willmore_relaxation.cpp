@@ -30,7 +30,6 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/warn.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
@@ -269,7 +268,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   const auto observe = [&](int n, const State& state) { observer(n, state); };
   row.status = run_to_end(
       [&] { integrate_run(run, start, flow, observe, checkpoint ? &*checkpoint : nullptr, row); }, recorder);
-  if (checkpoint) warn(checkpoint->remark());
+  if (checkpoint) row.seconds = checkpoint->seconds_before();
 
   // 4. The row of the table.
   describe_run(recorder, row);

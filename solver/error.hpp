@@ -35,6 +35,12 @@ struct ExtinctionError : NumericsError {
   ExtinctionError at(int step, double t) const;  ///< the message, with step and time behind it
 };
 
+/// A run was asked to stop and has stopped after a whole step; what was computed is good (exit 2: it is not
+/// done).
+struct StoppedError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// printf-style formatting into a std::string ("%.17g" and so on).
 std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
 

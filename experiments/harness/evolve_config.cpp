@@ -253,10 +253,17 @@ void read_limits(const JsonReader& reader, EvolveConfig& config) {
   read("normal_length", 1, config.limits.normal_length);
 }
 
+/// Empty when the key is not there.
+std::string file_name(const JsonReader& output, const std::string& key) {
+  if (!output.has(key)) return "";
+  if (!output.text(key).empty()) return output.text(key);
+  throw InputError(output.where() + ": found " + key + " = \"\"; expected the name of a file");
+}
+
 /// "every" and "times" of the output; they need "vtu".
 SnapshotPlan snapshot_plan(const JsonReader& output) {
   SnapshotPlan plan;
-  if (output.has("vtu")) plan.pvd = output.text("vtu");
+  plan.pvd = file_name(output, "vtu");
   plan.every = output.integer_within("every", 0, 0, 100000000);
   if (output.has("times")) {
     for (const json& time : output.array("times")) {
@@ -292,9 +299,9 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   if (reader.has("output")) {
     const JsonReader output(reader.object("output"), source + ": output");
     output.accept_only({"nodal", "series", "vtu", "every", "times", "checkpoint"});
-    config.nodal = output.has("nodal") ? output.text("nodal") : "";
-    config.series = output.has("series") ? output.text("series") : "";
-    config.checkpoint = output.has("checkpoint") ? output.text("checkpoint") : "";
+    config.nodal = file_name(output, "nodal");
+    config.series = file_name(output, "series");
+    config.checkpoint = file_name(output, "checkpoint");
     config.snapshots = snapshot_plan(output);
   }
   if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));

@@ -63,7 +63,7 @@ std::string evolve_config_help() {
               "normal_length": 4},            no limit where that is < 0.01), |nu| or 1/|nu| of a flow's nu beyond this
    "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
-              "checkpoint": "run.checkpoint", the same command goes on from it when the run was stopped
+              "checkpoint": "run.checkpoint", the same command goes on from it; see below
               "every": 10,                    at every 10th step (default 0: none of these)
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
 Units: what is given has those of the data. Defaults and tolerances are relative to L, the power of ten next to
@@ -92,7 +92,16 @@ u grows to 1000 times its first size writes what it has computed, says so, and e
 "ok", what has ended the run, or "ok, but ..": nu and H of a flow that evolves them are no longer those of the surface (H nu
 and kappa, smoothed over an edge length, differ by more than 25% in L2, or the rates of area int H nu . v and int kappa . v
 by more than 25% of ||H nu|| ||v||, or willmore_energy and kappa_energy by more than 25%, degree 1: 50%; looked at at the
-start, the end and every 50 steps), as on meshes that do not resolve the curvature; or, bgn, nodes have slid off edges.)";
+start, the end and every 50 steps), as on meshes that do not resolve the curvature; or, bgn, nodes have slid off edges.
+Folders of output files are made, and the files tried, before the first step.
+Checkpoint: the file is written every 30 seconds, when the run is stopped, and at its end, and is kept. A run that finds it
+goes on from it, bit for bit as if it had not been stopped; so more steps, or a later end_time, prolong a finished run (with
+adaptive steps the last ones, which led to the earlier end, are taken again). output may change: every and times hold from
+there on, and a vtu of another name begins there. A file that does not serve (another tau, mesh, variant, build of the
+program; damaged) is an error before the first step, and stays as it is. What a run has gone on from is kept as
+run.checkpoint.previous.
+SIGINT and SIGTERM stop a run after the step in progress: it writes its checkpoint and what it has computed, with "status":
+"stopped by signal SIGINT at t = ..", and ends with exit code 2, since it is not done. A second signal ends it at once.)";
 }
 
 }  // namespace esfem

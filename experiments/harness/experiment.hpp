@@ -28,12 +28,17 @@ struct Options {
 struct Cell {
   std::string name;  ///< unique, no blanks or slashes, e.g. "h2_tau5"
   double cost;       ///< estimated seconds on one core
-  /// Completes the planned row: everything but cell, seconds, peak_memory_mb. Other files of the run
-  /// (snapshots) go into `folder`, which may not exist yet; "": none are wanted. It is cells/STEM/CELL beside
-  /// the table.
+  /// Completes the planned row: everything but cell, peak_memory_mb and seconds, which are those of earlier
+  /// processes where it goes on from a checkpoint. Other files of the run (snapshots, checkpoint_file) go
+  /// into `folder`, which may not exist yet; "": none are wanted. It is cells/STEM/CELL beside the table.
   std::function<Row(Row row, const std::string& folder)> run;
   Row planned = {};  ///< what is known beforehand (level, tau, steps, ...): the row of a run that fails
 };
+
+/// Where the cell with this folder keeps its checkpoint; it is removed when the row is written.
+inline std::string checkpoint_file(const std::string& folder) {
+  return folder + "/checkpoint";
+}
 
 /// One experiment: a grid of cells, and how its orders are fitted.
 struct Experiment {

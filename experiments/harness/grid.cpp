@@ -2,7 +2,7 @@
 #include "experiments/harness/grid.hpp"
 
 #include <cmath>
-#include <filesystem>
+#include <cstdlib>
 #include <utility>
 
 #include "experiments/harness/provenance.hpp"
@@ -93,10 +93,17 @@ std::string run_to_end(const std::function<void()>& integrate, RunRecorder& reco
   return status;
 }
 
+double checkpoint_seconds() {
+  const char* asked = std::getenv("ESFEM_CHECKPOINT_SECONDS");
+  return asked ? std::atof(asked) : 30;
+}
+
 std::optional<Checkpoint> checkpoint_in(const std::string& folder, const std::string& cell) {
   if (folder.empty()) return {};
-  std::filesystem::create_directories(folder);
-  return Checkpoint(folder + "/checkpoint", {{"cell", cell}, {"build", build_identity()}});
+  std::optional<Checkpoint> checkpoint = Checkpoint(
+      checkpoint_file(folder), {{"cell", cell}, {"build", build_identity()}}, checkpoint_seconds(), warn);
+  checkpoint->start_afresh_when_unusable();
+  return checkpoint;
 }
 
 void describe_run(RunRecorder& recorder, Row& row) {

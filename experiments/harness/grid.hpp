@@ -64,8 +64,13 @@ SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>&
 /// through.
 std::string run_to_end(const std::function<void()>& integrate, RunRecorder& recorder);
 
-/// The file "checkpoint" in the folder of a run, from which the cell goes on when it is started again; of
-/// another cell or another build of the program it is not taken. None without folder.
+/// The seconds between two checkpoints of a run: 30, or the environment's ESFEM_CHECKPOINT_SECONDS (0: at
+/// every step), by which tests/crash finds checkpoints in short runs.
+double checkpoint_seconds();
+
+/// The checkpoint in the folder of a run, from which the cell goes on when it is started again; of another
+/// cell or another build of the program it is not taken. run_experiment removes it when the row is written.
+/// None without folder.
 std::optional<Checkpoint> checkpoint_in(const std::string& folder, const std::string& cell);
 
 /// Fills in the series, and the list "snapshots" of {"t", "file"} when there are some.

@@ -19,6 +19,8 @@ int guarded_main(const std::function<int()>& body) {
     return report(error.what(), exit_usage);
   } catch (const NumericsError& error) {
     return report(error.what(), exit_numerics);
+  } catch (const StoppedError& error) {
+    return report(error.what(), exit_numerics);
   } catch (const std::bad_alloc&) {
     return report("out of memory", exit_numerics);
   } catch (const std::exception& error) {

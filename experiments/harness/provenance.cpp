@@ -5,11 +5,12 @@
 #include <unistd.h>
 
 #include <ctime>
-#include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <set>
 
 #include "experiments/harness/library_environment.hpp"
+#include "solver/time/checkpoint.hpp"
 
 namespace esfem {
 
@@ -50,7 +51,8 @@ std::string executable_path() {
 }
 
 nlohmann::json build_identity() {
-  return std::filesystem::last_write_time(executable_path()).time_since_epoch().count();
+  std::ifstream file(executable_path(), std::ios::binary);
+  return nlohmann::json::array({checksum({std::istreambuf_iterator<char>(file), {}})});
 }
 
 nlohmann::json provenance(int argc, char** argv) {

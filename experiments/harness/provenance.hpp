@@ -12,7 +12,7 @@ namespace esfem {
 /// Path of the running executable.
 std::string executable_path();
 
-/// Tells one build of this program from another.
+/// Tells one build of this program from another: a checksum of the executable.
 nlohmann::json build_identity();
 
 /// Where the numbers come from: {"version", "git", "dirty", "compiler", "flags", "cpu", "threads", "date"

@@ -101,10 +101,16 @@ std::string without_extension(const std::string& output) {
   return has_it ? output.substr(0, output.size() - extension.size()) : "";
 }
 
-/// Where the cells of a table keep other files: beside it; "" when there is no such place.
-std::string cells_folder(const std::string& output, const std::string& stem) {
+/// Where a cell of a table keeps other files: beside it; "" when there is no such place.
+std::string cell_folder(const std::string& output, const std::string& stem, const Cell& cell) {
   if (without_extension(output).empty()) return "";
-  return (std::filesystem::path(output).parent_path() / "cells" / stem).string();
+  return (std::filesystem::path(output).parent_path() / "cells" / stem / cell.name).string();
+}
+
+/// The row is written: nothing is left to go on with.
+void remove_checkpoint(const std::string& folder) {
+  std::error_code ignored;
+  if (!folder.empty()) std::filesystem::remove(checkpoint_file(folder), ignored);
 }
 
 Row run_cell(const Cell& cell, const std::string& folder) {
@@ -117,21 +123,21 @@ Row run_cell(const Cell& cell, const std::string& folder) {
     row.status = std::string("failed: ") + error.what();
   }
   row.cell = cell.name;
-  row.seconds = clock.elapsed_seconds();
+  row.seconds += clock.elapsed_seconds();
   row.peak_memory_mb = peak_memory_mb();
   if (row.status != "ok")
     std::cerr << program_invocation_short_name << ": cell " << cell.name << ": " << row.status << std::endl;
   return row;
 }
 
-std::vector<Row> run_all(const std::vector<Cell>& cells, const std::string& folder) {
+std::vector<Row> run_all(const std::vector<Cell>& cells, const std::string& output, const std::string& stem) {
   double total_cost = 0;
   for (const Cell& cell : cells) total_cost += cell.cost;
   Progress progress(cells.size(), total_cost);
   std::vector<Row> rows;
   for (const Cell& cell : cells) {
     progress.cell_starts(cell.name);
-    rows.push_back(run_cell(cell, folder.empty() ? "" : folder + "/" + cell.name));
+    rows.push_back(run_cell(cell, cell_folder(output, stem, cell)));
     progress.cell_ends(cell.cost);
   }
   return rows;
@@ -180,25 +186,43 @@ void write_table(const Table& table, const std::string& output) {
   write_json(table, output);
 }
 
+void prepare_table(const std::string& output) {
+  const std::string base = without_extension(output);
+  if (base.empty()) return;
+  prepare_output(base + ".csv");
+  prepare_output(base + ".tex");
+}
+
+void write_list(const std::vector<Cell>& cells, const std::string& output) {
+  std::string text;
+  for (const Cell& cell : most_expensive_first(cells))
+    text += format("%s %.2f\n", cell.name.c_str(), cell.cost);
+  write_file(output, text);
+}
+
+void write_cell(const Cell& cell, const std::string& output, Table table) {
+  const std::string folder = without_extension(output);
+  table.rows = {run_cell(cell, folder)};
+  write_json(table, output);
+  remove_checkpoint(folder);
+}
+
 void answer(const Experiment& experiment, const Request& request, Table table) {
   const std::vector<Cell> cells = checked_cells(experiment, request.options);
-  if (request.list) {
-    std::string text;
-    for (const Cell& cell : most_expensive_first(cells))
-      text += format("%s %.2f\n", cell.name.c_str(), cell.cost);
-    return write_file(request.output, text);
-  }
+  const std::string& output = request.output;
+  prepare_output(output);
+  if (request.list) return write_list(cells, output);
   if (experiment.parameters) table.parameters = experiment.parameters(request.options);
-  if (!request.cell.empty()) {
-    table.rows = {run_cell(find_cell(cells, request), without_extension(request.output))};
-    return write_json(table, request.output);
-  }
+  if (!request.cell.empty()) return write_cell(find_cell(cells, request), output, std::move(table));
+  prepare_table(output);
   if (request.collect_from.empty())
-    table.rows = run_all(cells, cells_folder(request.output, experiment.stem));
+    table.rows = run_all(cells, output, experiment.stem);
   else
     collect(cells, request.collect_from, table);
   table.fits = fit_table(table, experiment.fit_range);
-  write_table(table, request.output);
+  write_table(table, output);
+  if (request.collect_from.empty())
+    for (const Cell& cell : cells) remove_checkpoint(cell_folder(output, experiment.stem, cell));
 }
 
 }  // namespace

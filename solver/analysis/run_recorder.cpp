@@ -47,9 +47,14 @@ void RunRecorder::record(int n, double t, const Field& x, std::vector<PointField
 bool RunRecorder::is_due(int n, double t) {
   if (!collection_) return false;
   bool due = n == 0 || (plan_.every > 0 && n % plan_.every == 0);
+  return pass_times(t) || due;
+}
+
+bool RunRecorder::pass_times(double t) {
   const double slack = 1e-9 * std::abs(t);
-  for (; next_time_ < plan_.times.size() && plan_.times[next_time_] <= t + slack; ++next_time_) due = true;
-  return due;
+  const std::size_t before = next_time_;
+  while (next_time_ < plan_.times.size() && plan_.times[next_time_] <= t + slack) ++next_time_;
+  return next_time_ > before;
 }
 
 void RunRecorder::write_newest() {
@@ -85,28 +90,30 @@ void RunRecorder::finish() {
 }
 
 nlohmann::json RunRecorder::progress() const {
-  nlohmann::json snapshots = nlohmann::json::array(), fields = nlohmann::json::array();
+  nlohmann::json snapshots = nlohmann::json::array(), collections = other_collections_,
+                 fields = nlohmann::json::array();
   for (const Snapshot& snapshot : snapshots_)
     snapshots.push_back({{"t", snapshot.t}, {"file", snapshot.file}});
+  if (collection_) collections[plan_.pvd] = std::move(snapshots);
   for (const PointField& field : newest_.fields)
     fields.push_back({{"name", field.name}, {"values", packed(field.values)}});
   return {
       {"series", series_},
-      {"next_time", next_time_},
-      {"snapshots", std::move(snapshots)},
+      {"collections", std::move(collections)},
       {"newest",
        {{"step", newest_.step}, {"t", newest_.t}, {"x", packed(newest_.x)}, {"fields", std::move(fields)}}}};
 }
 
 void RunRecorder::resume(const nlohmann::json& progress) {
   auto series = progress.at("series").get<Series>();
-  const auto next_time = progress.at("next_time").get<std::size_t>();
+  nlohmann::json collections = progress.at("collections");
   std::vector<Snapshot> snapshots;
   std::vector<std::pair<double, std::string>> listed;
-  for (const nlohmann::json& snapshot : progress.at("snapshots")) {
-    snapshots.push_back({snapshot.at("t").get<double>(), snapshot.at("file").get<std::string>()});
-    listed.emplace_back(snapshots.back().t, snapshots.back().file);
-  }
+  if (collections.contains(plan_.pvd))
+    for (const nlohmann::json& snapshot : collections.at(plan_.pvd)) {
+      snapshots.push_back({snapshot.at("t").get<double>(), snapshot.at("file").get<std::string>()});
+      listed.emplace_back(snapshots.back().t, snapshots.back().file);
+    }
   const nlohmann::json& surface = progress.at("newest");
   Surface newest = {
       surface.at("step").get<int>(), surface.at("t").get<double>(), unpacked(surface.at("x")), {}};
@@ -114,10 +121,14 @@ void RunRecorder::resume(const nlohmann::json& progress) {
     newest.fields.push_back({field.at("name").get<std::string>(), unpacked(field.at("values"))});
 
   if (collection_) collection_->resume(std::move(listed));
+  collections.erase(plan_.pvd);
+  other_collections_ = std::move(collections);
   series_ = std::move(series);
-  next_time_ = next_time;
   snapshots_ = std::move(snapshots);
   newest_ = std::move(newest);
+  next_time_ = 0;
+  pass_times(newest_.t);
+  if (collection_ && snapshots_.empty()) finish();
 }
 
 void attach(Checkpoint& checkpoint, RunRecorder& recorder) {

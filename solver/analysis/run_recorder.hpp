@@ -74,12 +74,14 @@ class RunRecorder {
 
   /// All that has been recorded, for CBOR.
   nlohmann::json progress() const;
-  /// Goes on from there, whatever has been recorded until now; the plan must be the same. Throws InputError,
-  /// and changes nothing, when a snapshot's file is missing.
+  /// Goes on from there, whatever has been recorded until now. With another plan: its times and `every` hold
+  /// from there on, and a new collection begins with the surface from which the run goes on, while the old
+  /// one stays as it is. Throws InputError, and changes nothing, when a snapshot's file is missing.
   void resume(const nlohmann::json& progress);
 
  private:
   bool is_due(int n, double t);
+  bool pass_times(double t);
   void write_newest();
 
   const SurfaceSpace& space_;
@@ -87,6 +89,7 @@ class RunRecorder {
   Energies energies_;
   std::size_t next_time_ = 0;
   std::optional<SnapshotCollection> collection_;
+  nlohmann::json other_collections_ = nlohmann::json::object();  ///< of earlier plans
   DiscreteCurvature curvature_;
   Series series_;
   Surface newest_;

@@ -2,6 +2,7 @@
 #include "solver/time/adaptive.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace esfem {
 
@@ -23,9 +24,22 @@ void check_adaptive_grid(const AdaptiveGrid& grid) {
       throw InputError(format("unit %g of the controlled field: expected a positive number", unit));
 }
 
-nlohmann::json to_json(const AdaptiveGrid& grid) {
-  return {{"order", grid.order},           {"end_time", grid.end_time},         {"tolerance", grid.tolerance},
-          {"first_step", grid.first_step}, {"largest_step", grid.largest_step}, {"units", grid.units}};
+nlohmann::json identity_of_steps(const AdaptiveGrid& grid) {
+  return {{"order", grid.order},
+          {"tolerance", grid.tolerance},
+          {"first_step", grid.first_step},
+          {"largest_step", grid.largest_step},
+          {"units", grid.units}};
+}
+
+std::string objection_of_end(const AdaptiveGrid& grid, const RunPosition& done) {
+  if (done.least_end <= grid.end_time) return "";
+  return format("its steps lead to an end time of %g at least, end_time is %g", done.least_end,
+                grid.end_time);
+}
+
+double least_end(double t, double tau) {
+  return (t + 2 * tau) * (1 + 4 * std::numeric_limits<double>::epsilon());
 }
 
 double next_time(const AdaptiveGrid& grid, double t, double tau) {

@@ -21,11 +21,17 @@ struct AdaptiveGrid {
 /// Throws InputError unless order is 1 or 2, end_time >= 0, tolerance > 0, end_time/10^12 <= first_step,
 /// units > 0 and, where a largest step is given, first_step <= largest_step.
 void check_adaptive_grid(const AdaptiveGrid& grid);
-nlohmann::json to_json(const AdaptiveGrid& grid);
+
+/// As for a TimeGrid: all but the end time.
+nlohmann::json identity_of_steps(const AdaptiveGrid& grid);
+std::string objection_of_end(const AdaptiveGrid& grid, const RunPosition& done);
 
 /// The time after t for a step of about tau: the last step ends at end_time, and what remains for one step to
 /// two is halved.
 double next_time(const AdaptiveGrid& grid, double t, double tau);
+
+/// The least end time (up to round-off, not below it) for which next_time is t + tau.
+double least_end(double t, double tau);
 
 /// min(1.5, max(0.5, 0.9 sqrt(tolerance / error))): the estimate is of second order. 1.5 keeps BDF2
 /// zero-stable.
@@ -86,37 +92,46 @@ struct AdaptiveRun {
 /// from its linear extrapolation from the two newest states, which is of second order in the step size; the
 /// first step is a backward Euler step without estimate. A step is rejected, and repeated from the same
 /// history with half its size, when the estimate is more than 4 times the tolerance, or when it throws a
-/// NumericsError. Calls observe(n, state) for n = 0, 1, .. Errors, exactness of restarts and checkpoints as
-/// for integrate.
+/// NumericsError. Calls observe(n, state) for n = 0, 1, .. Errors, exactness of restarts, checkpoints and
+/// stops as for integrate; the last state that is saved is the one before the first step whose size depends
+/// on the end time, so that a run with a later end goes on from there.
 template <class Flow, class Observer>
 AdaptiveRun integrate_adaptive(Flow& flow, const AdaptiveGrid& grid, typename Flow::State initial,
                                Field Flow::State::*controlled, Observer&& observe,
                                Checkpoint* checkpoint = nullptr) {
   check_adaptive_grid(grid);
   History<typename Flow::State> past(2);
-  RunPosition done{0, grid.first_step, 0};
+  RunPosition done{0, grid.first_step, 0, 0};
   initial.t = 0;
-  until_end(checkpoint, [&] {
-    typename Flow::State& next = initial;
-    if (!resume_run(checkpoint, flow, to_json(grid), initial, past, done))
-      at_step(0, 0.0, [&] {
-        check_finite(next);
-        observe(0, std::as_const(next));
-        past.push(next);
-      });
-    Field difference;
-    while (past.back(0).t < grid.end_time) {
-      const int n = done.n + 1;
-      at_step(n, next.t, [&] {
-        take_adaptive_step(flow, grid, past, controlled, done, difference, next);
-        settle(flow, past, next);
-        observe(n, std::as_const(next));
-      });
+  typename Flow::State& next = initial;
+  bool goes_on = true;
+  if (!resume_run(checkpoint, flow, grid, initial, past, done))
+    at_step(0, 0.0, [&] {
+      check_finite(next);
+      goes_on = goes_on_after(observe, 0, std::as_const(next));
       past.push(next);
-      done.n = n;
-      if (checkpoint) checkpoint->save_when_due(done, past);
-    }
-  });
+    });
+  Field difference;
+  bool depends_on_end = false;
+  while (goes_on && past.back(0).t < grid.end_time) {
+    const double least = least_end(past.back(0).t, done.tau);
+    if (checkpoint && !depends_on_end)
+      least <= grid.end_time ? checkpoint->save_when_due(done, past) : checkpoint->save(done, past);
+    depends_on_end = depends_on_end || least > grid.end_time;
+    done.least_end = std::max(done.least_end, least);
+    const int n = done.n + 1;
+    at_step(n, next.t, [&] {
+      take_adaptive_step(flow, grid, past, controlled, done, difference, next);
+      settle(flow, past, next);
+      goes_on = goes_on_after(observe, n, std::as_const(next));
+    });
+    past.push(next);
+    done.n = n;
+  }
+  if (past.back(0).t < grid.end_time) {
+    if (checkpoint && !depends_on_end) checkpoint->save(done, past);
+    stop_at(done.n, past.back(0).t);
+  }
   return {done.n, done.rejected};
 }
 

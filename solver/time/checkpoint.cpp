@@ -16,27 +16,54 @@ using nlohmann::json;
 
 constexpr std::size_t checksum_length = 16;
 
-/// FNV-1a with 64 bits, in hexadecimal digits.
-std::string checksum(const std::string& bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
-  return format("%016llx", static_cast<unsigned long long>(hash));
-}
-
 std::string cbor(const json& value) {
   std::string bytes;
   json::to_cbor(value, bytes);
   return bytes;
 }
 
-/// The key that two identities do not share, in words.
-std::string difference(const json& found, const json& expected) {
-  for (const auto& [key, value] : expected.items())
-    if (!found.contains(key) || found.at(key) != value) return "another " + key;
-  return "";
+std::string shown(const json& value) {
+  return value.is_null() ? "none" : value.dump();
+}
+
+/// What is asked for and is not there, or is there otherwise, in words; "" when `found` is `asked`. `where`
+/// follows each of the keys.
+std::string difference(const json& found, const json& asked, const std::string& where = "") {
+  std::string words;
+  json all = found;
+  all.update(asked);
+  for (const auto& [key, unused] : all.items()) {
+    const json there = found.value(key, json()), here = asked.value(key, json());
+    if (there == here) continue;
+    words += words.empty() ? "" : ", ";
+    if (there.is_object() && here.is_object())
+      words += difference(there, here, " in " + key + where);
+    else if (there.is_array() || here.is_array())
+      words += "another " + key + where;
+    else
+      words += format("another %s%s (it has %s, %s is asked for)", key.c_str(), where.c_str(),
+                      shown(there).c_str(), shown(here).c_str());
+  }
+  return words;
+}
+
+/// Of two identities; their parts need not be named.
+std::string other_run(const json& found, const json& asked) {
+  std::string words;
+  for (const auto& [part, value] : asked.items()) {
+    const std::string differs = difference(found.at(part), value);
+    words += (words.empty() || differs.empty() ? "" : ", ") + differs;
+  }
+  return words;
 }
 
 }  // namespace
+
+std::string checksum(const std::string& bytes) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3;
+  return format("%016llx", static_cast<unsigned long long>(hash));
+}
 
 json packed(const Field& field) {
   std::vector<std::uint8_t> bytes(field.size() * sizeof(double));
@@ -67,13 +94,13 @@ json unseal(const std::string& bytes) {
   return json::from_cbor(content, /*strict=*/true, /*allow_exceptions=*/false);
 }
 
-Checkpoint::Checkpoint(std::string file, json description, double seconds)
-    : file_(std::move(file)), description_(std::move(description)), interval_(seconds) {
+Checkpoint::Checkpoint(std::string file, json description, double seconds, Say say)
+    : file_(std::move(file)),
+      description_(std::move(description)),
+      interval_(seconds),
+      say_(say ? std::move(say) : [](const std::string&) {}) {
   if (!(seconds >= 0)) throw InputError(format("checkpoint every %g seconds: expected 0 or more", seconds));
-  const std::filesystem::path folder = std::filesystem::path(file_).parent_path();
-  std::error_code error;
-  if (!folder.empty()) std::filesystem::create_directories(folder, error);
-  if (error) throw InputError(folder.string() + ": this folder cannot be made: " + error.message());
+  prepare_output(file_);
 }
 
 void Checkpoint::attach(std::function<json()> save, std::function<void(const json&)> load) {
@@ -81,29 +108,35 @@ void Checkpoint::attach(std::function<json()> save, std::function<void(const jso
 }
 
 void Checkpoint::identify(const json& grid, const json& initial) {
-  identity_ = {
-      {"description", description_}, {"time grid", grid}, {"initial state", checksum(cbor(initial))}};
+  identity_ = {{"description", description_},
+               {"grid", grid},
+               {"initial", {{"initial state", json::array({checksum(cbor(initial))})}}}};
 }
 
-bool Checkpoint::read(const std::function<void(const json&)>& restore) {
-  remark_.clear();
+bool Checkpoint::read(const std::function<std::string(const json&)>& restore) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file_, ignored)) return false;
   std::ifstream stream(file_, std::ios::binary);
-  if (!stream) return false;
   std::ostringstream bytes;
   bytes << stream.rdbuf();
   const json content = unseal(bytes.str());
+  std::string why;
   try {
-    if (!content.is_object()) throw InputError("damaged");
-    const std::string other = difference(content.at("identity"), identity_);
-    if (!other.empty()) throw InputError(other);
-    restore(content.at("run"));
+    if (!stream) throw InputError("it cannot be read");
+    if (!content.is_object()) throw InputError("it is damaged, or no checkpoint");
+    const std::string other = other_run(content.at("identity"), identity_);
+    if (!other.empty()) throw InputError("it is of " + other);
+    say_(file_ + ": the run goes on from this checkpoint, " + restore(content.at("run")));
     return true;
   } catch (const json::exception& error) {
-    remark_ = error.what();
-  } catch (const std::runtime_error& error) {
-    remark_ = error.what();
+    why = error.what();
+  } catch (const InputError& error) {
+    why = error.what();
   }
-  remark_ = file_ + ": this checkpoint is not used: " + remark_;
+  why = file_ + ": this checkpoint cannot be used: " + why;
+  if (!starts_afresh_)
+    throw InputError(why + "; it stays as it is: remove it, or name another one, to start at t = 0");
+  say_(why + "; the run starts at t = 0");
   return false;
 }
 
@@ -121,15 +154,21 @@ void Checkpoint::load_attached(const json& saved) {
 }
 
 void Checkpoint::write(json run) {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started_;
+  run["seconds"] = seconds_before_ + elapsed.count();
   run["attached"] = json::array();
   for (const Companion& companion : companions_) run["attached"].push_back(companion.save());
+  if (keeps_previous_) keep_previous();
   write_file(file_, seal({{"identity", identity_}, {"run", std::move(run)}}));
+  keeps_previous_ = false;
   saved_ = std::chrono::steady_clock::now();
 }
 
-void Checkpoint::remove() {
-  std::error_code ignored;
-  std::filesystem::remove(file_, ignored);
+void Checkpoint::keep_previous() const {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::copy_file(file_, file_ + ".previous", fs::copy_options::overwrite_existing, error);
+  if (error) fs::remove(file_ + ".previous", error);
 }
 
 }  // namespace esfem

@@ -14,12 +14,13 @@
 
 namespace esfem {
 
-/// How far a run has come: its newest step, and of an adaptive run the size wanted for the next step and the
-/// number of rejected steps.
+/// How far a run has come: its newest step, and of an adaptive run the size wanted for the next step, the
+/// number of rejected steps, and the least end time for which the sizes of its steps are the same.
 struct RunPosition {
   int n = 0;
   double tau = 0;
   int rejected = 0;
+  double least_end = 0;
 };
 
 /// A Field to the last bit, for CBOR: {"rows", "columns", "values": its doubles as they lie in memory}.
@@ -51,60 +52,82 @@ State unpacked_state(const nlohmann::json& json, const State& like) {
   return state;
 }
 
-/// The bytes of a checkpoint file: the checksum (FNV-1a, 64 bits) of what follows, and the JSON as CBOR.
+/// FNV-1a with 64 bits, in hexadecimal digits.
+std::string checksum(const std::string& bytes);
+
+/// The bytes of a checkpoint file: the checksum of what follows, and the JSON as CBOR.
 std::string seal(const nlohmann::json& json);
 /// Its inverse; a discarded JSON value when the bytes are not what `seal` has made.
 nlohmann::json unseal(const std::string& bytes);
 
-/// A file from which a run that was stopped goes on bit for bit: the states of its History and whatever else
-/// is attached. It belongs to one run; a file of another run is never taken for it.
+/// A file from which a run goes on bit for bit: the states of its History and whatever else is attached. It
+/// stays when the run has ended, so that one with a later end goes on from it. It belongs to one run; a file
+/// of another run is never taken for it, and never replaced. What a run has gone on from is kept beside it,
+/// as FILE.previous, when the file is first replaced.
 class Checkpoint {
  public:
+  using Say = std::function<void(const std::string& message)>;
+
   /// The file is replaced (as a whole) every `seconds` seconds of wall-clock time at most; 0: at every step.
   /// `description` says which run this is; what it must contain is all that its numbers depend on: the
   /// version of the program, mesh, variant, parameters. Time grid and initial values are compared beside it.
-  /// Folders that are missing are made. Throws InputError when they cannot be, or when `seconds` is negative.
-  Checkpoint(std::string file, nlohmann::json description, double seconds = 30);
+  /// What is in an array is compared, and not shown where a message says what differs. `say` is told that
+  /// the run goes on, and where. Folders that are missing are made. Throws InputError when the file cannot be
+  /// written, or when `seconds` is negative.
+  Checkpoint(std::string file, nlohmann::json description, double seconds = 30, Say say = {});
+
+  /// Instead of an InputError: that a file cannot be used is said, and the run starts at t = 0 and replaces
+  /// it. For files that nobody has named; what the run has gone on from is not kept.
+  void start_afresh_when_unusable() { starts_afresh_ = true; }
 
   /// Adds what belongs to the run beside the flow. What save() returns goes into the file; load(that) is
   /// called when the run goes on from there, and must restore it exactly, or throw.
   void attach(std::function<nlohmann::json()> save, std::function<void(const nlohmann::json&)> load);
 
-  /// Fills the empty `past`, `progress` and what is attached from the file and returns true. Returns false
-  /// and changes nothing when there is no file, or one that cannot be used: remark() says why.
+  /// Fills the empty `past`, `progress` and what is attached from the file and returns true; false when there
+  /// is no file. Throws InputError, and changes nothing, when the file is of another run, damaged, or
+  /// `objection` to its position is not empty: it says what differs and what to do.
   template <class State>
-  bool resume(const nlohmann::json& grid, const State& initial, History<State>& past, RunPosition& progress) {
+  bool resume(const nlohmann::json& grid, const State& initial, History<State>& past, RunPosition& progress,
+              const std::function<std::string(const RunPosition&)>& objection) {
     identify(grid, packed_state(initial));
     return read([&](const nlohmann::json& run) {
       const RunPosition saved = {run.at("n").get<int>(), run.at("tau").get<double>(),
-                                 run.at("rejected").get<int>()};
+                                 run.at("rejected").get<int>(), run.at("least_end").get<double>()};
       std::vector<State> states;
       for (const nlohmann::json& state : run.at("states")) states.push_back(unpacked_state(state, initial));
       const int expected = std::min(past.capacity(), saved.n + 1), found = static_cast<int>(states.size());
       if (found != expected) throw InputError(format("%d states, expected %d", found, expected));
+      const std::string why_not = objection(saved);
+      if (!why_not.empty()) throw InputError(why_not);
       load_attached(run.at("attached"));
       std::for_each(states.rbegin(), states.rend(), [&](State& state) { past.push(state); });
       progress = saved;
+      keeps_previous_ = !starts_afresh_;
+      seconds_before_ = run.at("seconds").get<double>();
+      return format("step %d, t = %g", saved.n, past.back(0).t);
     });
   }
 
-  /// Writes the file when it is time to. Throws InputError when it cannot be written.
+  /// Writes the file when it is time to, or at once. Throws InputError when it cannot be written.
   template <class State>
   void save_when_due(const RunPosition& progress, const History<State>& past) {
-    if (std::chrono::steady_clock::now() - saved_ < interval_) return;
+    if (std::chrono::steady_clock::now() - saved_ >= interval_) save(progress, past);
+  }
+  template <class State>
+  void save(const RunPosition& progress, const History<State>& past) {
     nlohmann::json states = nlohmann::json::array();
     for (int j = 0; j < past.size(); ++j) states.push_back(packed_state(past.back(j)));
     write({{"n", progress.n},
            {"tau", progress.tau},
            {"rejected", progress.rejected},
+           {"least_end", progress.least_end},
            {"states", std::move(states)}});
   }
 
-  /// Removes the file: the run is at its end.
-  void remove();
-
-  /// Why a file that was there has not been used; empty when it was, or when there was none.
-  const std::string& remark() const { return remark_; }
+  /// Wall-clock seconds that the run had taken when the file from which it goes on was written; 0 when it has
+  /// started at t = 0.
+  double seconds_before() const { return seconds_before_; }
 
  private:
   struct Companion {
@@ -113,16 +136,20 @@ class Checkpoint {
   };
 
   void identify(const nlohmann::json& grid, const nlohmann::json& initial);
-  bool read(const std::function<void(const nlohmann::json& run)>& restore);
+  bool read(const std::function<std::string(const nlohmann::json& run)>& restore);
   void load_attached(const nlohmann::json& saved);
   void write(nlohmann::json run);
+  void keep_previous() const;
 
   std::string file_;
   nlohmann::json description_, identity_;
   std::chrono::duration<double> interval_;
-  std::chrono::steady_clock::time_point saved_ = std::chrono::steady_clock::now();
+  Say say_;
+  bool starts_afresh_ = false;
+  std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), saved_ = started_;
+  double seconds_before_ = 0;
+  bool keeps_previous_ = false;  ///< the file is that from which the run has gone on
   std::vector<Companion> companions_;
-  std::string remark_;
 };
 
 }  // namespace esfem

@@ -40,8 +40,13 @@ void check_time_grid(const TimeGrid& grid) {
     throw InputError(format("%d substeps per step: expected 1 or more", grid.start.substeps_per_step));
 }
 
-nlohmann::json to_json(const TimeGrid& grid) {
-  return {{"order", grid.order}, {"tau", grid.tau}, {"steps", grid.steps}, {"start", to_string(grid.start)}};
+nlohmann::json identity_of_steps(const TimeGrid& grid) {
+  return {{"order", grid.order}, {"tau", grid.tau}, {"start", to_string(grid.start)}};
+}
+
+std::string objection_of_end(const TimeGrid& grid, const RunPosition& done) {
+  if (done.n <= grid.steps) return "";
+  return format("it is at step %d, %d steps are asked for", done.n, grid.steps);
 }
 
 }  // namespace esfem

@@ -33,7 +33,11 @@ struct TimeGrid {
 
 /// Throws InputError unless 1 <= order <= 5, tau > 0, steps >= 0, K >= 1.
 void check_time_grid(const TimeGrid& grid);
-nlohmann::json to_json(const TimeGrid& grid);
+
+/// What the numbers of a step depend on: all but the number of steps.
+nlohmann::json identity_of_steps(const TimeGrid& grid);
+/// Why a run that has come so far does not lead to this end; empty when it does.
+std::string objection_of_end(const TimeGrid& grid, const RunPosition& done);
 
 /// Throws NumericsError naming field and node when a value of the state is not finite.
 template <class State>
@@ -101,6 +105,21 @@ void take_substeps(Flow& flow, History<typename Flow::State>& past, int q, doubl
   }
 }
 
+/// Whether an observer lets the run go on after this step: one that returns nothing always does.
+template <class Observer, class State>
+bool goes_on_after(Observer& observe, int n, const State& state) {
+  if constexpr (std::is_same_v<decltype(observe(n, state)), bool>) {
+    return observe(n, state);
+  } else {
+    observe(n, state);
+    return true;
+  }
+}
+
+[[noreturn]] inline void stop_at(int n, double t) {
+  throw StoppedError(format("stopped at t = %g (step %d)", t, n));
+}
+
 /// Computes the starting value of step n < q. `fine` is the history with step size tau/K (Start::substeps).
 template <class Flow>
 void find_starting_value(Flow& flow, const TimeGrid& grid,
@@ -136,7 +155,7 @@ void take_starting_steps(Flow& flow, const TimeGrid& grid, const typename Flow::
     at_step(n, n * grid.tau, [&] {
       if (n > 0) find_starting_value(flow, grid, exact_state, n, past, fine, next);
       check_finite(next);
-      observe(n, std::as_const(next));
+      if (!goes_on_after(observe, n, std::as_const(next)) && n < grid.steps) stop_at(n, n * grid.tau);
       past.push(next);
     });
 }
@@ -150,27 +169,15 @@ struct KeepsProgress<Flow,
 
 /// Checkpoint::resume, before which the flow itself is attached when it has progress() and resume(json). A
 /// checkpoint serves one run. False without checkpoint.
-template <class Flow, class State>
-bool resume_run(Checkpoint* checkpoint, Flow& flow, const nlohmann::json& grid, const State& initial,
+template <class Grid, class Flow, class State>
+bool resume_run(Checkpoint* checkpoint, Flow& flow, const Grid& grid, const State& initial,
                 History<State>& past, RunPosition& done) {
   if (!checkpoint) return false;
   if constexpr (KeepsProgress<Flow>::value)
     checkpoint->attach([&flow] { return flow.progress(); },
                        [&flow](const nlohmann::json& saved) { flow.resume(saved); });
-  return checkpoint->resume(grid, initial, past, done);
-}
-
-/// Runs `body`, the steps of a run, and removes the file of the checkpoint when the run has come to its end,
-/// be it by a failure of the numerics.
-template <class Body>
-void until_end(Checkpoint* checkpoint, Body&& body) {
-  try {
-    body();
-  } catch (const NumericsError&) {
-    if (checkpoint) checkpoint->remove();
-    throw;
-  }
-  if (checkpoint) checkpoint->remove();
+  return checkpoint->resume(identity_of_steps(grid), initial, past, done,
+                            [&grid](const RunPosition& saved) { return objection_of_end(grid, saved); });
 }
 
 /// Runs a flow from t = 0: calls observe(n, state) for n = 0..steps, the starting steps included; t = n tau.
@@ -179,10 +186,13 @@ void until_end(Checkpoint* checkpoint, Body&& body) {
 /// that computes next (its t is set already, its Fields have the right size and stale values) from the q
 /// newest states by BDF of order q. exact_state(t) is needed for Start::exact with q > 1; without it that
 /// start is an InputError. NumericsErrors (of the observer too) are rethrown with step and time; a non-finite
-/// value in a new state is one too. A flow that has settle(past, next) may change both after each step. With
-/// a checkpoint the run goes on where one that was stopped had saved its states (after the starting steps,
-/// that is), and observes the steps from there on: with the same numbers, as long as `step` depends on its
-/// arguments alone, or what an earlier step has left in the flow is restored by its resume(progress()).
+/// value in a new state is one too. A flow that has settle(past, next) may change both after each step. An
+/// observer that returns false ends the run after this step with a
+/// StoppedError. With a checkpoint the run goes on where an earlier one had saved its states (after the
+/// starting steps, that is), with the same or another number of steps, and observes the steps from there on:
+/// with the same numbers, as long as `step` depends on its arguments alone, or what an earlier step has left
+/// in the flow is restored by its resume(progress()). It is saved now and then, when the run is stopped, and
+/// at its end.
 template <class Flow, class Observer>
 void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
                const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe,
@@ -194,27 +204,28 @@ void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
   History<typename Flow::State> past(grid.order);
   RunPosition done;
   initial.t = 0;
-  until_end(checkpoint, [&] {
-    if (!resume_run(checkpoint, flow, to_json(grid), initial, past, done)) {
-      take_starting_steps(flow, grid, initial, exact_state, observe, past);
-      done.n = grid.order - 1;
-    }
-    typename Flow::State& next = initial;
-    while (done.n < grid.steps) {
-      const int n = done.n + 1;
-      const double t = n * grid.tau;
-      at_step(n, t, [&] {
-        next.t = t;
-        flow.step(past, grid.order, grid.tau, next);
-        check_finite(next);
-        settle(flow, past, next);
-        observe(n, std::as_const(next));
-        past.push(next);
-      });
-      done.n = n;
-      if (checkpoint) checkpoint->save_when_due(done, past);
-    }
-  });
+  if (!resume_run(checkpoint, flow, grid, initial, past, done)) {
+    take_starting_steps(flow, grid, initial, exact_state, observe, past);
+    done.n = past.size() - 1;
+  }
+  typename Flow::State& next = initial;
+  bool goes_on = true;
+  while (goes_on && done.n < grid.steps) {
+    if (checkpoint) checkpoint->save_when_due(done, past);
+    const int n = done.n + 1;
+    const double t = n * grid.tau;
+    at_step(n, t, [&] {
+      next.t = t;
+      flow.step(past, grid.order, grid.tau, next);
+      check_finite(next);
+      settle(flow, past, next);
+      goes_on = goes_on_after(observe, n, std::as_const(next));
+      past.push(next);
+    });
+    done.n = n;
+  }
+  if (checkpoint && past.size() == past.capacity()) checkpoint->save(done, past);
+  if (done.n < grid.steps) stop_at(done.n, past.back(0).t);
 }
 
 }  // namespace esfem

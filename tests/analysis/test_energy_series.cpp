@@ -134,6 +134,7 @@ struct ResumedEnergy : testing::Test {
 TEST_F(ResumedEnergy, EqualsThatOfARunThatWasNotStopped) {
   const Outcome whole = run(-1);
   EXPECT_EQ(whole.observed, 31);
+  fs::remove(folder / "checkpoint");
   run(17);
   EXPECT_EQ(run(24).observed, 8) << "it goes on after step 16, the last one that was saved";
   const Outcome resumed = run(-1);

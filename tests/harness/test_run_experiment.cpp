@@ -98,7 +98,7 @@ TEST_F(RunExperiment, BadCommandLinesGetOneLineWithWhatIsAcceptedAndExit1) {
       {"--list --cell h0_tau0", "excludes"},
       {"--threads 0", "1 to 1024"},
       {"--collect . --cell h0_tau0", "excludes"},
-      {"--cell h0_tau0 --output no/folder/a.json", "no/folder"}};
+      {"--cell h0_tau0 --output /proc/no/a.json", "/proc/no"}};
   for (const auto& [arguments, accepted] : cases) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 1) << arguments;
@@ -170,6 +170,30 @@ TEST_F(RunExperiment, AFailureThatIsNotTheMethodsLeavesNoRow) {
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.err, "fake_experiment: out of memory\n");
   EXPECT_TRUE(files().empty());
+}
+
+TEST_F(RunExperiment, SecondsAreThoseOfAllProcesses) {
+  run("--cell h0_tau0 --earlier-seconds 1000 --milliseconds 50 --output cell.json");
+  EXPECT_GT(table("cell.json").rows.at(0).seconds, 1000.05);
+}
+
+TEST_F(RunExperiment, MakesTheFolderOfItsOutputOrRefusesItBeforehand) {
+  EXPECT_EQ(run("--output new/folder/all.json").exit_code, 0);
+  EXPECT_EQ(table("new/folder/all.json").rows.size(), 4u);
+  const Outcome outcome = run("--milliseconds 60000 --output new");
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("new: cannot be written: it is a folder"));
+  fs::create_directory(folder / "a.csv");
+  EXPECT_THAT(run("--milliseconds 60000 --output a.json").err, HasSubstr("a.csv: cannot be written"));
+}
+
+TEST_F(RunExperiment, TheCheckpointGoesWhenTheRowIsWritten) {
+  fs::create_directory(folder / "h0_tau0");
+  std::ofstream(folder / "h0_tau0/checkpoint") << "of this cell";
+  EXPECT_EQ(run("--cell h0_tau0 --memory-cell h0_tau0 --output h0_tau0.json").exit_code, 2);
+  EXPECT_TRUE(fs::exists(folder / "h0_tau0/checkpoint"));
+  EXPECT_EQ(run("--cell h0_tau0 --output h0_tau0.json").exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder / "h0_tau0/checkpoint"));
 }
 
 TEST_F(RunExperiment, CollectsAllCellsInTheOrderOfTheGrid) {

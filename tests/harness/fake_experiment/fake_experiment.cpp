@@ -16,7 +16,7 @@ namespace {
 
 struct FakeOptions {
   std::string failing_cell, memory_cell, writing_cell;
-  int milliseconds = 0;
+  int milliseconds = 0, earlier_seconds = 0;
 };
 
 /// A supernodal factorisation of a full matrix: CHOLMOD's OpenMP and the threads of BLAS have something to
@@ -52,6 +52,7 @@ Row run(Row row, const std::string& name, const std::string& folder, const FakeO
     std::filesystem::create_directories(folder);
     write_file(folder + "/snapshot", "as on the day");
   }
+  row.seconds = fake.earlier_seconds;
   row.nodes = std::lround(1 / (row.h * row.h));
   row.errors["u"]["nodal_L2"] = row.h * row.h + std::pow(row.tau, 3);
   factorise();
@@ -94,6 +95,7 @@ int main(int argc, char** argv) {
     line.text("--memory-cell", fake.memory_cell, "runs out of memory");
     line.text("--writing-cell", fake.writing_cell, "writes a file");
     line.integer("--milliseconds", 0, 60000, fake.milliseconds, "that each cell takes");
+    line.integer("--earlier-seconds", 0, 60000, fake.earlier_seconds, "that its earlier processes took");
   };
   experiment.cells = [&](const Options& options) { return cells(options, fake); };
   experiment.parameters = [](const Options& options) {
