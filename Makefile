@@ -34,8 +34,8 @@ stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*
 programs := evolve check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
-.PHONY: help figures check bench deps configure build test test-library test-plots test-vtu sanitize format format-check \
-        samples tables-check verdicts independent plots-check report report-check packages-check packages-check-each gallery \
+.PHONY: help figures check bench deps configure build test test-library test-plots test-vtu sanitize crash crash-check \
+        format format-check samples tables-check verdicts independent plots-check report report-check packages-check packages-check-each gallery \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -48,6 +48,7 @@ help:
 	@echo "                   $(or $(stems),(none yet))"
 	@echo "make evolve        only the program for your own surface, mesh and flow -> $(BIN)/evolve"
 	@echo "make sanitize      tests of what flows are made of under AddressSanitizer and UBSan, in build-asan/"
+	@echo "make crash         kills runs at KILLS=200 random moments, fills disks, damages checkpoints; then compares the numbers"
 	@echo "make bench         ms per step and phase at growing sizes"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
 	@echo "make gallery       small pictures in docs/ and the headline table of README.md, from the same"
@@ -105,7 +106,7 @@ $(stems): %: prepare-%
 	+@$(call run,paper,$@,all)
 
 # Every part of the check runs, and the end says which of them failed. What they read is traced for the last one.
-check_parts := format-check test-library test-plots test-vtu samples tables-check verdicts independent plots-check \
+check_parts := format-check test-library test-plots test-vtu crash-check samples tables-check verdicts independent plots-check \
                report-check packages-check
 check: build
 	+@failed=""
@@ -119,7 +120,8 @@ check: build
 
 # `check` has built what its parts need; a part that is called by itself builds first.
 ifeq ($(MAKELEVEL),0)
-test-library test-plots test-vtu samples tables-check verdicts independent plots-check report-check packages-check: build
+test-library test-plots test-vtu crash-check samples tables-check verdicts independent plots-check report-check \
+  packages-check: build
 endif
 
 # run_tests(folder, options): tests that pass are not listed.
@@ -141,6 +143,12 @@ sanitize:
 	$(call prepare,build,build tests,sanitized)
 	$(call run_tests,$$BUILD,-L '^(fe|mesh|assembly|linalg|time|analysis)$$' \
 	  -E 'GeneratedMesh.KeepsItsPromises.*_50 |IsTheSameToTheBitAfterOtherCalls')
+
+# Runs that are killed at random moments, full disks, damaged checkpoints; a part of it as a check.
+crash: build
+	@$(PYTHON) tests/crash/crash.py --build $(BUILD) --kills $(or $(KILLS),200)
+crash-check:
+	@$(PYTHON) tests/crash/crash.py --build $(BUILD) --kills 20 --cuts 0 evolve cut
 
 format:
 	@$(call prepare,deps,format)
