@@ -12,9 +12,7 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
 #include <optional>
 
 #include "experiments/harness/command_line.hpp"
@@ -42,70 +40,6 @@ namespace {
 
 using namespace esfem;
 using nlohmann::json;
-
-/// N x c numbers as [[..], ..], or [..] for one column.
-template <class Matrix>
-json rows(const Matrix& field) {
-  json list = json::array();
-  for (int j = 0; j < field.rows(); ++j) {
-    if (field.cols() == 1) {
-      list.push_back(field(j, 0));
-    } else {
-      list.push_back(std::vector<typename Matrix::Scalar>(field.cols()));
-      for (int l = 0; l < field.cols(); ++l) list.back()[l] = field(j, l);
-    }
-  }
-  return list;
-}
-
-void write_series(const EvolveConfig& config, RunRecorder& recorder, const std::string& status,
-                  const json& config_json, const json& origin) {
-  json series = recorder.series();
-  series["status"] = status;
-  series["config"] = config_json;
-  series["provenance"] = origin;
-  write_file(config.series, series.dump(1) + "\n");
-}
-
-void write_nodal(const EvolveConfig& config, const RunRecorder& recorder, const json& config_json,
-                 const json& origin) {
-  const RunRecorder::Surface& newest = recorder.newest();
-  const Field x = newest.x.rowwise() + config.origin.transpose();
-  json nodal = {{"t", newest.t}, {"x", rows(x)}, {"config", config_json}, {"provenance", origin}};
-  for (const PointField& field : newest.fields) nodal[field.name] = rows(field.values);
-  nodal["elements"] = rows(config.mesh.elements);
-  if (!config.node_numbers.empty()) nodal["node_numbers"] = config.node_numbers;
-  write_file(config.nodal, nodal.dump() + "\n");
-}
-
-/// Writes all that is asked for; what cannot be written keeps nothing else from it. Returns `failures` with
-/// what could not be written.
-std::vector<std::string> write(const EvolveConfig& config, RunRecorder& recorder, const std::string& status,
-                               const json& config_json, const json& origin,
-                               std::vector<std::string> failures = {}) {
-  const auto attempt = [&](auto&& action) {
-    try {
-      action();
-    } catch (const InputError& error) {
-      if (std::find(failures.begin(), failures.end(), error.what()) == failures.end())
-        failures.push_back(error.what());
-    }
-  };
-  if (!config.series.empty()) attempt([&] { write_series(config, recorder, status, config_json, origin); });
-  if (!config.nodal.empty()) attempt([&] { write_nodal(config, recorder, config_json, origin); });
-  attempt([&] { recorder.finish(); });
-  return failures;
-}
-
-/// The failures of `write` in one line, with what is left to do.
-std::string joined(const std::vector<std::string>& failures, const EvolveConfig& config) {
-  std::string text;
-  for (const std::string& failure : failures) text += (text.empty() ? "" : "; ") + failure;
-  std::error_code ignored;
-  if (!config.checkpoint.empty() && std::filesystem::exists(config.checkpoint, ignored))
-    text += "; the same command goes on from " + config.checkpoint;
-  return text;
-}
 
 template <class State>
 using ExactState = std::function<State(double)>;
@@ -402,24 +336,26 @@ int evolve(const std::string& file, const json& origin) {
   try {
     run(asked);
     compare_curvature(asked);
-    failures = write(config, recorder, remark.empty() ? "ok" : "ok, but " + remark, config_json, origin);
+    failures =
+        write_outputs(config, recorder, remark.empty() ? "ok" : "ok, but " + remark, config_json, origin);
   } catch (const NumericsError& error) {
     const std::string status = end_of(config, recorder, error);
     if (!recorder.empty()) {
-      failures = write(config, recorder, status, config_json, origin);
+      failures = write_outputs(config, recorder, status, config_json, origin);
       warn(failures.empty() ? format("what was computed up to t = %g is written", recorder.newest().t)
                             : joined(failures, config));
     }
     throw NumericsError(status);
   } catch (const StoppedError&) {
     const std::string status = stopped_status(recorder);
-    failures = write(config, recorder, status, config_json, origin);
+    failures = write_outputs(config, recorder, status, config_json, origin);
     failures.insert(failures.begin(), status);
     throw StoppedError(joined(failures, config));
   } catch (const InputError& error) {
     if (recorder.empty()) throw;
-    failures = write(config, recorder, format("stopped at t = %g: %s", recorder.newest().t, error.what()),
-                     config_json, origin, {error.what()});
+    failures =
+        write_outputs(config, recorder, format("stopped at t = %g: %s", recorder.newest().t, error.what()),
+                      config_json, origin, {error.what()});
   }
   if (!failures.empty()) throw InputError(joined(failures, config));
   return exit_done;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/harness/evolve_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 #include <vector>
@@ -24,6 +25,41 @@ std::string place_of(const std::string& file) {
 template <class Matrix>
 std::string bytes_of(const Matrix& values) {
   return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(typename Matrix::Scalar)};
+}
+
+/// N x c numbers as [[..], ..], or [..] for one column.
+template <class Matrix>
+json rows(const Matrix& field) {
+  json list = json::array();
+  for (int j = 0; j < field.rows(); ++j) {
+    if (field.cols() == 1) {
+      list.push_back(field(j, 0));
+    } else {
+      list.push_back(std::vector<typename Matrix::Scalar>(field.cols()));
+      for (int l = 0; l < field.cols(); ++l) list.back()[l] = field(j, l);
+    }
+  }
+  return list;
+}
+
+void write_series(const EvolveConfig& config, RunRecorder& recorder, const std::string& status,
+                  const json& config_json, const json& origin) {
+  json series = recorder.series();
+  series["status"] = status;
+  series["config"] = config_json;
+  series["provenance"] = origin;
+  write_file(config.series, series.dump(1) + "\n");
+}
+
+void write_nodal(const EvolveConfig& config, const RunRecorder& recorder, const json& config_json,
+                 const json& origin) {
+  const RunRecorder::Surface& newest = recorder.newest();
+  const Field x = newest.x.rowwise() + config.origin.transpose();
+  json nodal = {{"t", newest.t}, {"x", rows(x)}, {"config", config_json}, {"provenance", origin}};
+  for (const PointField& field : newest.fields) nodal[field.name] = rows(field.values);
+  nodal["elements"] = rows(config.mesh.elements);
+  if (!config.node_numbers.empty()) nodal["node_numbers"] = config.node_numbers;
+  write_file(config.nodal, nodal.dump() + "\n");
 }
 
 }  // namespace
@@ -64,6 +100,32 @@ json run_identity(const EvolveConfig& config, const json& description) {
   identity["quadrature"] = config.rule.name;
   identity["build of the program"] = build_identity();
   return identity;
+}
+
+std::vector<std::string> write_outputs(const EvolveConfig& config, RunRecorder& recorder,
+                                       const std::string& status, const json& config_json, const json& origin,
+                                       std::vector<std::string> failures) {
+  const auto attempt = [&](auto&& action) {
+    try {
+      action();
+    } catch (const InputError& error) {
+      if (std::find(failures.begin(), failures.end(), error.what()) == failures.end())
+        failures.push_back(error.what());
+    }
+  };
+  if (!config.series.empty()) attempt([&] { write_series(config, recorder, status, config_json, origin); });
+  if (!config.nodal.empty()) attempt([&] { write_nodal(config, recorder, config_json, origin); });
+  attempt([&] { recorder.finish(); });
+  return failures;
+}
+
+std::string joined(const std::vector<std::string>& failures, const EvolveConfig& config) {
+  std::string text;
+  for (const std::string& failure : failures) text += (text.empty() ? "" : "; ") + failure;
+  std::error_code ignored;
+  if (!config.checkpoint.empty() && std::filesystem::exists(config.checkpoint, ignored))
+    text += "; the same command goes on from " + config.checkpoint;
+  return text;
 }
 
 }  // namespace esfem

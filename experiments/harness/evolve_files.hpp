@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "experiments/harness/evolve_config.hpp"
 
@@ -16,5 +17,14 @@ void prepare_outputs(const EvolveConfig& config, const nlohmann::json& json, con
 /// What the numbers of a run depend on beside its time steps and its initial state, for its checkpoint: the
 /// mesh as it is used, not the name of its file; nothing of the output, and not how long the run is.
 nlohmann::json run_identity(const EvolveConfig& config, const nlohmann::json& json);
+
+/// Writes all that is asked for; what cannot be written keeps nothing else from it. Returns `failures` with
+/// what could not be written.
+std::vector<std::string> write_outputs(const EvolveConfig& config, RunRecorder& recorder,
+                                       const std::string& status, const nlohmann::json& config_json,
+                                       const nlohmann::json& origin, std::vector<std::string> failures = {});
+
+/// The failures of write_outputs in one line, with what is left to do.
+std::string joined(const std::vector<std::string>& failures, const EvolveConfig& config);
 
 }  // namespace esfem
