@@ -142,7 +142,7 @@ TEST(GmshVolumes, IncompleteElementsAreRefusedByName) {
 
 TEST(MshVolumes, TheBoundaryIsTakenWhereTrianglesAreMissingOrInside) {
   const std::string tetrahedra = "2 4 2 0 1 1 2 3 4\n3 4 2 0 1 1 3 2 5\n";
-  for (const std::string& triangles : {"", "1 2 2 0 1 1 2 3\n"}) {
+  for (const std::string triangles : {"", "1 2 2 0 1 1 2 3\n"}) {
     const std::string count = triangles.empty() ? "2\n" : "3\n";
     MeshFile read = parse_msh("a.msh", msh_2(five_nodes, count + triangles + tetrahedra));
     EXPECT_THAT(read.remarks, ElementsAre("the boundary of 2 volume elements, 6 faces, is the surface"));
