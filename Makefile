@@ -34,7 +34,7 @@ stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*
 programs := evolve check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
-.PHONY: help figures check bench deps configure build test test-library test-plots test-vtu sanitize crash crash-check \
+.PHONY: help figures check bench deps configure build test test-library test-plots test-vtu sanitize fuzz crash crash-check \
         format format-check samples tables-check verdicts independent plots-check report report-check packages-check packages-check-each gallery \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
@@ -49,6 +49,7 @@ help:
 	@echo "make evolve        only the program for your own surface, mesh and flow -> $(BIN)/evolve"
 	@echo "make sanitize      tests of what flows are made of under AddressSanitizer and UBSan, in build-asan/"
 	@echo "make crash         kills runs at KILLS=200 random moments, fills disks, damages checkpoints; then compares the numbers"
+	@echo "make fuzz          mutated files for each reader, SECONDS=60 of each, in build-fuzz/ (needs clang)"
 	@echo "make bench         ms per step and phase at growing sizes"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
 	@echo "make gallery       small pictures in docs/ and the headline table of README.md, from the same"
@@ -149,6 +150,19 @@ crash: build
 	@$(PYTHON) tests/crash/crash.py --build $(BUILD) --kills $(or $(KILLS),200)
 crash-check:
 	@$(PYTHON) tests/crash/crash.py --build $(BUILD) --kills 20 --cuts 0 evolve cut
+
+# Each reader of what others have written is fed with mutations of its corpus. What is found is kept in
+# build-fuzz/corpus; an input that breaks a promise is build-fuzz/TARGET-crash-*, and becomes a file of tests/fuzz/corpus.
+SECONDS ?= 60
+fuzz:
+	@if ! command -v clang++ >/dev/null; then echo "no clang++: install clang and libclang-rt-14-dev" >&2; exit 1; fi
+	export BUILD=build-fuzz PRESET=fuzz CXX=clang++
+	$(call prepare,build,build tests,fuzzers)
+	basename -a tests/fuzz/corpus/* | xargs -P$(local_jobs) -I{} sh -c 'mkdir -p build-fuzz/corpus/{} && \
+	  build-fuzz/bin/fuzz_{} -max_total_time=$(SECONDS) -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+	    -artifact_prefix=build-fuzz/{}- build-fuzz/corpus/{} tests/fuzz/corpus/{} >build-fuzz/{}.log 2>&1 || \
+	  { tail -n 40 build-fuzz/{}.log; exit 255; }'
+	grep -H stat::number_of_executed_units build-fuzz/*.log
 
 format:
 	@$(call prepare,deps,format)

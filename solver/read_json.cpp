@@ -88,7 +88,10 @@ bool is_utf16(const std::string& content) {
 }  // namespace
 
 json read_json(const std::string& file) {
-  const std::string content = content_of(file);
+  return parse_json(content_of(file), file);
+}
+
+json parse_json(const std::string& content, const std::string& file) {
   if (is_utf16(content)) throw InputError(file + ": not JSON: text in UTF-16; expected UTF-8");
   OpenObjects objects(file);
   const auto watch = [&objects](int, json::parse_event_t event, json& parsed) {

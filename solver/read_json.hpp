@@ -12,4 +12,7 @@ namespace esfem {
 /// objects in each other.
 nlohmann::json read_json(const std::string& file);
 
+/// The same for the content of a file.
+nlohmann::json parse_json(const std::string& content, const std::string& file);
+
 }  // namespace esfem
