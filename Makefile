@@ -132,7 +132,7 @@ test: test-library test-plots test-vtu
 test-library:
 	@$(call run_tests,$(BUILD))
 test-plots:
-	@(cd plots && basename -s .py -a test_*.py | xargs -n6 -P$(local_jobs) $(PYTHON) -m unittest -q)
+	@(cd plots && basename -s .py -a test_*.py | xargs -n3 -P$(local_jobs) $(PYTHON) -m unittest -q)
 	$(PYTHON) -m unittest discover -q -s tests/packages
 # VTK and ParaView read the snapshots where they are installed; so what this reads is in no list of packages.
 test-vtu:
