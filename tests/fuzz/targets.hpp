@@ -7,9 +7,9 @@
 
 namespace esfem {
 
-/// Everything that reads what others have written, by the name of its corpus: a function of a file's content that
-/// returns, or throws InputError or NumericsError. Anything else (another exception, a crash, a hang, a leak) is a
-/// fault.
+/// Everything that reads what others have written, by the name of its corpus: a function of a file's content
+/// that returns, or throws InputError or NumericsError. Anything else (another exception, a crash, a hang, a
+/// leak) is a fault.
 const std::map<std::string, std::function<void(const std::string& content)>>& fuzz_targets();
 
 }  // namespace esfem
