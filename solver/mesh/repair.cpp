@@ -141,7 +141,8 @@ Targets close_nodes(const Mesh& mesh, const std::vector<int>& nodes, double& lar
   const double width = joining_distance * (mesh.nodes.colwise().maxCoeff().transpose() - corner).norm();
   Targets target = no_targets(mesh);
   largest = 0;
-  if (!(width > 0 && std::isfinite(width))) return target;
+  // Nodes that are not finite have no place; the check of the mesh names them.
+  if (!(width > 0 && std::isfinite(width)) || !mesh.nodes.allFinite()) return target;
   const std::vector<double> reach = reach_of_nodes(mesh, width);
   Grid places(corner, width);
   for (int i : nodes) {
