@@ -131,14 +131,14 @@ void record_more(const Run& run, const CahnHilliardState& state) {
       ginzburg_landau_energy(run.space, state.x, state.u, run.config.cahn_hilliard.epsilon));
 }
 
-/// The limits of a run; u is what diffuses on the surface at the start, where something does.
-RegularityLimits limits(const Run& run, const Field& u = {}) {
+/// The limits of a run; size_of_u: of what diffuses on the surface, where something does.
+RegularityLimits limits(const Run& run, double size_of_u = 0) {
   const auto& asked = run.config.limits;
   RegularityLimits limits = limits_from_start(run.space, run.config.mesh.nodes);
   if (asked.curvature_size) limits.curvature_size = *asked.curvature_size;
   if (asked.radius_ratio) limits.radius_ratio = *asked.radius_ratio;
   if (asked.normal_length) limits.normal_length = *asked.normal_length;
-  if (u.size() > 0) limits.field_size = 1e3 * u.cwiseAbs().maxCoeff();
+  if (size_of_u > 0) limits.field_size = 1e3 * size_of_u;
   return limits;
 }
 
@@ -219,7 +219,8 @@ void run_growing_sphere(const Run& run) {
   };
   const GrowingSphereProblem problem(coupled.parameters, coupled.variant.law, coupled.coupling);
   const CoupledDiffusionState initial = exact_state(0);
-  run_flow(CoupledDiffusion(run.space, problem, coupled.parameters, coupled.variant, limits(run, initial.u)),
+  run_flow(CoupledDiffusion(run.space, problem, coupled.parameters, coupled.variant,
+                            limits(run, initial.u.cwiseAbs().maxCoeff())),
            run, initial, exact_state);
 }
 
@@ -229,8 +230,11 @@ void run_tumour_growth(const Run& run) {
   if (!initial)
     initial = tumour_growth_state(run.space, run.config.mesh.nodes, coupled.kinetics, coupled.disturbance,
                                   coupled.seed, run.config.disturbance_origin);
+  // From nothing u grows to its steady state, which is no blow-up.
+  const double size_of_u = std::max(initial->u.cwiseAbs().maxCoeff(),
+                                    TumourGrowth::steady_state(coupled.kinetics).cwiseAbs().maxCoeff());
   run_flow(CoupledDiffusion(run.space, TumourGrowth(coupled.kinetics), coupled.parameters, coupled.variant,
-                            limits(run, initial->u)),
+                            limits(run, size_of_u)),
            run, *initial, {});
 }
 

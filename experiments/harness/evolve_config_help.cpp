@@ -88,8 +88,8 @@ field data TimeValue, step, flow and configuration (this file; texts are arrays 
 and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
 A run that meets a singularity, shrinks to nothing (extinct: its area, extrapolated, is zero within the next step, or
 below 1e-6 of the first, or an area A under mean curvature flow has lived for A/(16 pi), the longest possible), or in which
-u grows to 1000 times its first size writes what it has computed, says so, and ends with exit code 2. "status" of series is
-"ok", what has ended the run, or "ok, but ..": nu and H of a flow that evolves them are no longer those of the surface (H nu
+u grows to 1000 times its first size (tumour_growth: or that of its steady state), writes what it has computed, says so,
+and ends with exit code 2. "status" of series is "ok", what has ended the run, or "ok, but ..": nu and H of a flow that evolves them are no longer those of the surface (H nu
 and kappa, smoothed over an edge length, differ by more than 25% in L2, or the rates of area int H nu . v and int kappa . v
 by more than 25% of ||H nu|| ||v||, or willmore_energy and kappa_energy by more than 25%, degree 1: 50%; looked at at the
 start, the end and every 50 steps), as on meshes that do not resolve the curvature; or, bgn, nodes have slid off edges.

@@ -153,5 +153,18 @@ TEST_F(EvolveStart, OtherFilesAreForTheScript) {
   }
 }
 
+TEST_F(EvolveStart, OfATumourMayBeNothing) {
+  const std::vector<std::string> nothing(6, "0");
+  const json tumour = {{"flow", "coupled_diffusion"},
+                       {"problem", "tumour_growth"},
+                       {"degree", 1},
+                       {"tau", 1e-3},
+                       {"steps", 3}};
+  ASSERT_EQ(run(from_file(octahedron(node_data("u1", 1, nothing) + node_data("u2", 1, nothing)), tumour)),
+            exit_done)
+      << message;
+  EXPECT_GT(read_json(nodal).at("u1")[0].get<double>(), 0);
+}
+
 }  // namespace
 }  // namespace esfem::test_evolve_start
