@@ -23,6 +23,7 @@ class EvolveProgram : public testing::Test {
       std::filesystem::path(ESFEM_BINARY_DIR) / "test_evolve" / std::to_string(getpid());
   const std::string nodal = (folder / "nodal.json").string(), series = (folder / "series.json").string();
   std::string message;  ///< what the last run said on standard error
+  std::string runner;   ///< a command that runs the program, with a blank behind
 
   void SetUp() override { std::filesystem::create_directories(folder); }
   void TearDown() override { std::filesystem::remove_all(folder); }
@@ -42,7 +43,7 @@ class EvolveProgram : public testing::Test {
   int run(const nlohmann::json& configuration) {
     const std::string file = (folder / "config.json").string(), errors = (folder / "errors.txt").string();
     write_file(file, configuration.dump());
-    const std::string command = std::string(ESFEM_BINARY_DIR) + "/bin/evolve " + file + " 2>" + errors;
+    const std::string command = runner + ESFEM_BINARY_DIR "/bin/evolve " + file + " 2>" + errors;
     const int status = std::system(command.c_str());
     std::ifstream stream(errors);
     message.assign(std::istreambuf_iterator<char>(stream), {});

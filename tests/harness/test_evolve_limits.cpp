@@ -3,22 +3,14 @@
 // surface's.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
-#include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <vector>
 
-#include "solver/analysis/table.hpp"
 #include "solver/constants.hpp"
-#include "solver/error.hpp"
 #include "solver/mesh/read.hpp"
+#include "tests/harness/evolve_program.hpp"
 
 namespace esfem::test_evolve_limits {
 namespace {
@@ -70,15 +62,8 @@ Mesh flat_icosahedron(int s) {
   return mesh;
 }
 
-class EvolveLimits : public testing::Test {
- protected:
-  const std::filesystem::path folder =
-      std::filesystem::path(ESFEM_BINARY_DIR) / "test_evolve_limits" / std::to_string(getpid());
-  const std::string mesh_file = (folder / "mesh.msh").string(), series = (folder / "series.json").string();
-  std::string message;  ///< what the last run said on standard error
-
-  void SetUp() override { std::filesystem::create_directories(folder); }
-  void TearDown() override { std::filesystem::remove_all(folder); }
+struct EvolveLimits : EvolveProgram {
+  const std::string mesh_file = (folder / "mesh.msh").string();
 
   json config(const json& changes) const {
     json result = {
@@ -86,17 +71,6 @@ class EvolveLimits : public testing::Test {
     result.merge_patch(changes);
     return result;
   }
-
-  int run(const json& configuration) {
-    const std::string file = (folder / "config.json").string(), errors = (folder / "errors.txt").string();
-    write_file(file, configuration.dump());
-    const std::string command = std::string(ESFEM_BINARY_DIR) + "/bin/evolve " + file + " 2>" + errors;
-    const int status = std::system(command.c_str());
-    std::ifstream stream(errors);
-    message.assign(std::istreambuf_iterator<char>(stream), {});
-    return WEXITSTATUS(status);
-  }
-
   double last(const char* name) const { return read_json(series).at(name).back(); }
   std::string status() const { return read_json(series).at("status"); }
 };

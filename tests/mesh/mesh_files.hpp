@@ -12,6 +12,7 @@
 
 #include "solver/error.hpp"
 #include "solver/mesh/mesh_file.hpp"
+#include "solver/mesh/read.hpp"
 #include "tests/mesh/topology.hpp"
 
 namespace esfem {
@@ -162,6 +163,16 @@ inline Mesh together(const Mesh& a, const Mesh& b) {
 
 /// What a parser says against a text, and what is said against the surface after repairs; "" when all is
 /// well.
+/// The error that a mesh gives, or "" when it is accepted.
+inline std::string check_complaint(Mesh mesh) {
+  try {
+    check_closed_surface(mesh, "here");
+    return "";
+  } catch (const InputError& error) {
+    return error.what();
+  }
+}
+
 inline std::string complaint_of(MeshFile (*parse)(const std::string&, const std::string&),
                                 const std::string& text) {
   try {

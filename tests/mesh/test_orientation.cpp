@@ -32,15 +32,6 @@ Mesh inside_out(Mesh mesh) {
   return mesh;
 }
 
-std::string complaint(Mesh mesh) {
-  try {
-    check_closed_surface(mesh, "here");
-    return "";
-  } catch (const InputError& error) {
-    return error.what();
-  }
-}
-
 /// A grid of the square whose sides i = 0 and i = n are one, and so are j = 0 and j = n, the second pair
 /// turned when `twisted`; without the second pair when `open`. The positions are of no surface: all points
 /// differ.
@@ -138,21 +129,21 @@ TEST(Orient, CavitiesKeepTheirOrientationRelativeToTheBody) {
 }
 
 TEST(Orient, RefusesOneSidedSurfaces) {
-  EXPECT_EQ(complaint(glued_square(6, false, false)).find("orientable"), std::string::npos);
-  EXPECT_THAT(complaint(glued_square(6, true, false)),
+  EXPECT_EQ(check_complaint(glued_square(6, false, false)).find("orientable"), std::string::npos);
+  EXPECT_THAT(check_complaint(glued_square(6, true, false)),
               AllOf(HasSubstr("here: element "), HasSubstr("not orientable"), HasSubstr("Klein bottle")));
-  EXPECT_THAT(complaint(glued_square(6, false, true)), HasSubstr("not closed, 2 boundary loops"));
+  EXPECT_THAT(check_complaint(glued_square(6, false, true)), HasSubstr("not closed, 2 boundary loops"));
 }
 
 TEST(Orient, RefusesSurfacesWithoutVolume) {
   Mesh flat = octasphere(1, 0);
   flat.nodes.col(2).setConstant(7);
-  EXPECT_THAT(complaint(flat), AllOf(HasSubstr("element 1 "), HasSubstr("pressed flat")));
+  EXPECT_THAT(check_complaint(flat), AllOf(HasSubstr("element 1 "), HasSubstr("pressed flat")));
   // A thin one is a surface, at any size and place; one of two that is flat is found.
   Mesh thin = octasphere(1, 0);
   thin.nodes.col(2) *= 1e-7;
-  for (double size : {1e-9, 1., 1e9}) EXPECT_EQ(complaint(scaled(thin, size)), "");
-  EXPECT_THAT(complaint(together(scaled(thin, 1, 5), flat)),
+  for (double size : {1e-9, 1., 1e9}) EXPECT_EQ(check_complaint(scaled(thin, size)), "");
+  EXPECT_THAT(check_complaint(together(scaled(thin, 1, 5), flat)),
               AllOf(HasSubstr("element 9 "), HasSubstr("pressed flat")));
 }
 
