@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <grp.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -22,8 +22,8 @@ class EvolveProgram : public testing::Test {
   const std::filesystem::path folder =
       std::filesystem::path(ESFEM_BINARY_DIR) / "test_evolve" / std::to_string(getpid());
   const std::string nodal = (folder / "nodal.json").string(), series = (folder / "series.json").string();
-  std::string message;  ///< what the last run said on standard error
-  std::string runner;   ///< a command that runs the program, with a blank behind
+  std::string message;        ///< what the last run said on standard error
+  unsigned user = geteuid();  ///< who runs the program; root may be anybody
 
   void SetUp() override { std::filesystem::create_directories(folder); }
   void TearDown() override { std::filesystem::remove_all(folder); }
@@ -43,10 +43,22 @@ class EvolveProgram : public testing::Test {
   int run(const nlohmann::json& configuration) {
     const std::string file = (folder / "config.json").string(), errors = (folder / "errors.txt").string();
     write_file(file, configuration.dump());
-    const std::string command = runner + ESFEM_BINARY_DIR "/bin/evolve " + file + " 2>" + errors;
-    const int status = std::system(command.c_str());
+    const int status = run_command(ESFEM_BINARY_DIR "/bin/evolve " + file + " 2>" + errors);
     std::ifstream stream(errors);
     message.assign(std::istreambuf_iterator<char>(stream), {});
+    return status;
+  }
+
+  /// Runs a command of the shell as `user`; returns its exit code.
+  int run_command(const std::string& command) const {
+    const pid_t child = fork();
+    if (child == 0) {
+      if (user == geteuid() || (setgroups(0, nullptr) == 0 && setuid(user) == 0))
+        execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+      _exit(127);
+    }
+    int status = -1;
+    waitpid(child, &status, 0);
     return WEXITSTATUS(status);
   }
 };
