@@ -23,6 +23,9 @@ KEPT = {"triangle", "triangle6", "triangle10", "triangle15", "quad", "tetra", "t
 LAGRANGE = {3: "triangle", 6: "triangle6", 10: "triangle10", 15: "triangle15"}
 
 
+EXPECTED = "a mesh expected; what evolve reads itself, ParaView saves as PLY and STL, Gmsh as MSH"
+
+
 class ConversionError(Exception):
     """What was found, and what was expected, in one line."""
 
@@ -68,25 +71,29 @@ def converted(mesh, remarks):
     points = np.asarray(mesh.points, float)
     if points.ndim != 2 or points.shape[1] != 3:
         raise ConversionError(f"points with {points.shape[-1]} coordinates, 3 expected")
-    return meshio.Mesh(points, kept_cells(mesh, remarks), point_data=kept_point_data(mesh, remarks))
+    cells = kept_cells(mesh, remarks)
+    one_part = [np.ones(len(nodes), np.int32) for _, nodes in cells]
+    return meshio.Mesh(points, cells, point_data=kept_point_data(mesh, remarks),
+                       cell_data={"gmsh:physical": one_part, "gmsh:geometrical": one_part})
 
 
 def read(path):
     try:
         return meshio.read(path)
     except SystemExit as error:  # meshio has said why
-        raise ConversionError("meshio cannot read it, a mesh expected") from error
+        raise ConversionError(f"meshio cannot read it, {EXPECTED}") from error
     except Exception as error:  # whatever its parsers raise
         if not os.path.exists(path):
             raise ConversionError("no such file, a mesh expected") from error
-        raise ConversionError(f"meshio cannot read it ({' '.join(str(error).split())}), a mesh expected") from error
+        why = " ".join(str(error).split()) or type(error).__name__
+        raise ConversionError(f"meshio cannot read it ({why}), {EXPECTED}") from error
 
 
 def write(path, mesh):
-    """Whole or not at all."""
+    """Whole or not at all. MSH 2.2: in 4.1 meshio writes one block of cells only."""
     new = path + ".new"
     try:
-        meshio.gmsh.write(new, mesh, fmt_version="4.1", binary=True)
+        meshio.gmsh.write(new, mesh, fmt_version="2.2", binary=True)
         os.replace(new, path)
     finally:
         if os.path.exists(new):
@@ -97,7 +104,7 @@ def main():
     parser = argparse.ArgumentParser(prog="convert_mesh.py", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("mesh", metavar="IN", help="a file that meshio reads")
-    parser.add_argument("output", metavar="OUT.msh", help="the mesh for evolve, binary MSH 4.1")
+    parser.add_argument("output", metavar="OUT.msh", help="the mesh for evolve, binary MSH 2.2")
     parser.error = lambda message: sys.exit(f"{parser.prog}: {message} (--help lists what is accepted)")
     arguments = parser.parse_args()
     if not arguments.output.endswith(".msh"):

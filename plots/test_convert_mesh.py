@@ -81,6 +81,19 @@ class ConvertMesh(unittest.TestCase):
             self.convert(meshio.Mesh(points, [("VTK_LAGRANGE_TRIANGLE", cells)]), "in.vtu")
             np.testing.assert_array_equal(meshio.read(self.output).cells_dict[kind], cells)
 
+    def test_several_blocks_of_cells(self):
+        points, cells = lagrange_tetrahedron(1)
+        volume = meshio.Mesh(CORNERS, [("tetra", [[0, 1, 2, 3]]), ("triangle", FACES)])
+        for mesh, name in ((meshio.Mesh(points, [("triangle", cells[:1]), ("triangle", cells[1:])]), "in.inp"),
+                           (volume, "in.vtu")):
+            with self.subTest(name):
+                self.assertEqual(self.convert(mesh, name), "")
+                found = meshio.read(self.output)
+                np.testing.assert_array_equal(found.points, mesh.points)
+                for kind, expected in mesh.cells_dict.items():
+                    np.testing.assert_array_equal(found.cells_dict[kind], expected)
+                self.assertEqual(set(found.cells_dict), set(mesh.cells_dict))
+
     def test_other_cells_and_data_are_skipped_with_a_remark(self):
         points, cells = lagrange_tetrahedron(1)
         mesh = meshio.Mesh(points, [("line", cells[:, :2]), ("triangle", cells), ("line", cells[:, 1:])],
@@ -96,7 +109,7 @@ class ConvertMesh(unittest.TestCase):
         self.assert_refused("missing.vtk", "missing.vtk: no such file")
         with open(os.path.join(self.folder, "rubbish.vtk"), "w", encoding="utf-8") as file:
             file.write("rubbish\n")
-        self.assert_refused("rubbish.vtk", "meshio cannot read it")
+        self.assert_refused("rubbish.vtk", "meshio cannot read it", "ParaView saves as PLY")
         points, cells = lagrange_tetrahedron(1)
         meshio.Mesh(points, [("line", cells[:, :2])]).write(os.path.join(self.folder, "lines.vtu"))
         self.assert_refused("lines.vtu", "4 cells of type line skipped", "no cell that evolve reads")
