@@ -207,7 +207,9 @@ independent:
 
 bench:
 	@$(call prepare,build,build bench,bench_step)
-	$(BIN)/bench_step
+	@# One thread for everybody, and for OpenBLAS, which knows no CPU newer than itself, its best kernels.
+	core=$$(grep -qw avx512vl /proc/cpuinfo && echo SkylakeX || { grep -qw avx2 /proc/cpuinfo && echo Haswell; } || true)
+	OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 OPENBLAS_CORETYPE=$$core $(BIN)/bench_step
 
 clean:
 	rm -rf $(BUILD) results/check

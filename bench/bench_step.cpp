@@ -20,15 +20,15 @@
 #include <string>
 #include <vector>
 
+#include "bench/benchmarks.hpp"
 #include "bench/naive_step.hpp"
-#include "experiments/harness/library_environment.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/constants.hpp"
 #include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/flows/willmore_terms.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 #include "solver/mesh/generate.hpp"
 
 namespace {
@@ -102,7 +102,7 @@ void step(benchmark::State& state, int subdivisions) {
   const Field u = normal_and_curvature(mesh);
   const double analysis_start = cpu_ms();
   const SurfaceSpace space(mesh);
-  SparseCholesky cholesky(space.pattern());
+  SpdSolver spd(space.pattern());
   const double analysis = cpu_ms() - analysis_start;
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   Field load, v, nu_H;
@@ -117,13 +117,13 @@ void step(benchmark::State& state, int subdivisions) {
     v = load.leftCols(3);
     nu_H = load.rightCols(4);
     phases.end("2_loads");
-    cholesky.factorise(1, M, 1, A);
+    spd.factorise(1, M, 1, A);
     phases.end("3_factor_K");
-    cholesky.solve(v);
+    spd.solve(v);
     phases.end("4_solve_3");
-    cholesky.factorise(delta0 / tau, M, 1, A);
+    spd.factorise(delta0 / tau, M, 1, A);
     phases.end("5_factor_u");
-    cholesky.solve(nu_H);
+    spd.solve(nu_H);
     phases.end("6_solve_4");
     state.SetIterationTime((cpu_ms() - begin) / 1e3);
   }
@@ -167,7 +167,7 @@ void flow_step(benchmark::State& state) {
   }
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(mesh.nodes, M, A);
-  SparseCholesky cholesky(space.pattern());
+  SpdSolver spd(space.pattern());
 
   Phases phases;
   for (auto _ : state) {
@@ -177,10 +177,10 @@ void flow_step(benchmark::State& state) {
     phases.end("step");
     Field v = next.v, u = next.u;
     phases.start();
-    cholesky.factorise(1, M, 1, A);
-    cholesky.solve(v);
-    cholesky.factorise(1.5 / 1e-5, M, 1, A);
-    cholesky.solve(u);
+    spd.factorise(1, M, 1, A);
+    spd.solve(v);
+    spd.factorise(1.5 / 1e-5, M, 1, A);
+    spd.solve(u);
     phases.end("factor_solve");
     state.SetIterationTime((cpu_ms() - begin) / 1e3);
   }
@@ -305,7 +305,6 @@ void cahn_hilliard_step(benchmark::State& state) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  set_library_environment(argc, argv);
   std::vector<char*> arguments(argv, argv + argc);
   std::string tabular = "--benchmark_counters_tabular=true";
   arguments.insert(arguments.begin() + 1, tabular.data());
@@ -335,5 +334,6 @@ int main(int argc, char** argv) {
       ->Unit(benchmark::kMillisecond)
       ->UseManualTime()
       ->Iterations(20);
+  esfem::register_factor_benchmarks();
   benchmark::RunSpecifiedBenchmarks();
 }

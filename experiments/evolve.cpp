@@ -22,7 +22,6 @@
 #include "experiments/harness/evolve_start.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/library_environment.hpp"
 #include "experiments/harness/provenance.hpp"
 #include "experiments/harness/stop_signal.hpp"
 #include "experiments/harness/warn.hpp"
@@ -34,6 +33,7 @@
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/phase_separation.hpp"
 #include "solver/flows/willmore_flow.hpp"
+#include "solver/thread_count.hpp"
 #include "solver/time/adaptive.hpp"
 
 namespace {
@@ -368,7 +368,6 @@ int evolve(const std::string& file, const json& origin) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  set_library_environment(argc, argv);
   return guarded_main([&] {
     std::string file;
     int threads = 1;
@@ -380,6 +379,7 @@ int main(int argc, char** argv) {
     line.argument("config", file, "the configuration", "CONFIG.json");
     line.integer("--threads", 1, 1024, threads, "threads that the factorisations may use");
     if (!line.parse(argc, argv)) return static_cast<int>(exit_done);
+    set_thread_count(threads);
     return evolve(file, provenance(argc, argv));
   });
 }

@@ -51,13 +51,12 @@ struct Experiment {
 };
 
 /// The main function of every experiment: --help, --list, --cell, --collect, --output, presets, progress with
-/// ETA, provenance, exit codes. It restarts the program once to limit the threads of its libraries
-/// (library_environment.hpp): do nothing before it. A NumericsError of a cell becomes a row with status
-/// "failed: why"; everything else ends the program.
+/// ETA, provenance, exit codes. A NumericsError of a cell becomes a row with status "failed: why"; everything
+/// else ends the program.
 int run_experiment(const Experiment& experiment, int argc, char** argv);
 
 /// Runs `body` and maps exceptions to a one-line message on standard error and an exit code: InputError 1,
-/// everything else 2. Programs that factorise call set_library_environment before it.
+/// everything else 2.
 int guarded_main(const std::function<int()>& body);
 
 }  // namespace esfem

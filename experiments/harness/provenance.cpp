@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/harness/provenance.hpp"
+#include "solver/thread_count.hpp"
 
 #include <limits.h>
 #include <unistd.h>
@@ -9,7 +10,6 @@
 #include <iterator>
 #include <set>
 
-#include "experiments/harness/library_environment.hpp"
 #include "solver/time/checkpoint.hpp"
 
 namespace esfem {
@@ -65,7 +65,7 @@ nlohmann::json provenance(int argc, char** argv) {
   const nlohmann::json build = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
   if (build.is_object()) result.update(build);
   result["cpu"] = cpu_model();
-  result["threads"] = threads_asked(argc, argv);
+  result["threads"] = thread_count();
   result["date"] = utc_now();
   result["command"] = command_line(argc, argv);
   return result;

@@ -9,11 +9,11 @@
 
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/experiment.hpp"
-#include "experiments/harness/library_environment.hpp"
 #include "experiments/harness/peak_memory.hpp"
 #include "experiments/harness/progress.hpp"
 #include "experiments/harness/provenance.hpp"
 #include "solver/error.hpp"
+#include "solver/thread_count.hpp"
 
 namespace esfem {
 
@@ -228,7 +228,6 @@ void answer(const Experiment& experiment, const Request& request, Table table) {
 }  // namespace
 
 int run_experiment(const Experiment& experiment, int argc, char** argv) {
-  set_library_environment(argc, argv);
   return guarded_main([&] {
     Request request;
     CommandLine line(experiment.help, experiment.stem);
@@ -236,6 +235,7 @@ int run_experiment(const Experiment& experiment, int argc, char** argv) {
     add_method_options(line, request.options);
     experiment.add_options(line);
     if (!line.parse(argc, argv)) return exit_done;
+    set_thread_count(request.threads);
 
     Table table;
     table.experiment = experiment.stem;

@@ -8,7 +8,7 @@
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/discrete_curvature.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -49,12 +49,12 @@ class VelocityErrors {
   /// Errors of V and z from (3.5b) at the start, M^-1 theta, also in the dual norm of kll21 §5.4, in which
   /// the square of e is (M e)ᵀ (M + A)^-1 M e.
   Errors of_start(const SurfaceSpace& space, const Field& theta) const {
-    SparseCholesky cholesky(space.pattern());
+    SpdSolver spd(space.pattern());
     Field e = theta, dual = theta;
-    cholesky.factorise(1, M_, 0, A_);
-    cholesky.solve(e);
-    cholesky.factorise(1, M_, 1, A_);
-    cholesky.solve(dual);
+    spd.factorise(1, M_, 0, A_);
+    spd.solve(e);
+    spd.factorise(1, M_, 1, A_);
+    spd.solve(dual);
     const SquaredNorms norms = nodal_norms(M_, A_, e);
     Errors errors = {{"V_initial", norms_of(norms, 0, 1)}, {"z_initial", norms_of(norms, 1, 3)}};
     const Eigen::VectorXd squares = theta.cwiseProduct(dual).colwise().sum();

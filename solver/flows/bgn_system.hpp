@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/assembly/surface_space.hpp"
-#include "solver/linalg/node_block_lu.hpp"
+#include "solver/linalg/symmetric_factor.hpp"
 
 namespace esfem {
 
@@ -11,12 +11,24 @@ namespace esfem {
 ///   S H + sum_a N_a dx_a = r,
 ///   N_a H - A dx_a = A x_a:
 /// the second line is (H nu, eta) = (grad (x + dx), grad eta), the first, with a symmetric S, the flow's own.
-/// It is symmetric and indefinite. Unknowns and equations go node by node, H, dx_1, dx_2, dx_3: each pair of
+/// It is symmetric and indefinite. Unknowns and equations go node by node, dx_1, dx_2, dx_3, H: each pair of
 /// nodes that share an element has a block
-///   [S    N_1  N_2  N_3]
-///   [N_1  -A           ]
-///   [N_2       -A      ]
-///   [N_3            -A ].
+///   [-A            N_1]
+///   [     -A       N_2]
+///   [          -A  N_3]
+///   [N_1  N_2  N_3  S ].
+/// A comes first because S is small in small steps.
+///
+/// With S and A positive semi-definite it needs no pivoting, in any order of the nodes. Take the rows and
+/// columns of some of the unknowns, h of H and d of dx, with K = [-A N^T; N S] in short. K (d, h) = 0 gives
+/// h^T S h + d^T A d = 0, hence S h = 0, A d = 0, N d = 0 and N^T h = 0. So h and d are constant on
+/// components of the surface all of whose unknowns were taken, and 0 elsewhere. Were h such a constant and
+/// not 0, its N^T h would be the integrals of nu_a phi_i, the derivative of the volume, and they would vanish
+/// in all nodes but the last, hence in all of them, since their sum over a closed surface does. Were d, N d =
+/// 0 would say that d . nu is 0 in the mean around each node. Neither happens on a surface that bounds a
+/// volume: all these minors are regular. Replacing S and A by S + e I and A + e I makes K quasi-definite,
+/// with a positive pivot for each unknown of H and a negative one for each of dx (Vanderbei, SIAM J. Optim.
+/// 5, 1995), and e -> 0 crosses no singular matrix: the signs stay.
 class BgnSystem {
  public:
   explicit BgnSystem(const SurfaceSpace& space);
@@ -33,9 +45,8 @@ class BgnSystem {
  private:
   double length_;
   SymmetricMatrix M_, A_, N_[3];
-  NodeBlockLu lu_;
-  Field Ax_;
-  Eigen::VectorXd right_, solution_;
+  SymmetricFactor<double, 4> factor_;
+  Field Ax_, solution_;
 };
 
 }  // namespace esfem

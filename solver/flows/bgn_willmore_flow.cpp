@@ -6,7 +6,7 @@
 
 namespace esfem {
 
-WeakWeingarten::WeakWeingarten(const SurfaceSpace& space) : space_(space), cholesky_(space.pattern()) {}
+WeakWeingarten::WeakWeingarten(const SurfaceSpace& space) : space_(space), spd_(space.pattern()) {}
 
 // nu x grad chi has integral 0 over a closed surface, so that -(nu_j, (grad chi)_i) is symmetric in i and j:
 // its symmetric part is taken.
@@ -22,8 +22,8 @@ void WeakWeingarten::compute(const Field& x, const Field& H, const SymmetricMatr
       }
   };
   space_.assemble_load<1, 6, 6>(x, H, integrand, A_);
-  cholesky_.factorise(1.0, M, 0.0, M);
-  cholesky_.solve(A_);
+  spd_.factorise(1.0, M, 0.0, M);
+  spd_.solve(A_);
 }
 
 void WeakWeingarten::assemble_Q(const Field& x, const Field& H, Field& out) {
@@ -68,9 +68,9 @@ BgnWillmoreFlow::State bgn_willmore_state_on(const SurfaceSpace& space, const Fi
   Field V;
   weingarten.assemble_Q(x, curvature.H(), V);
   V -= A * curvature.H();
-  SparseCholesky cholesky(space.pattern());
-  cholesky.factorise(1.0, M, 0.0, A);
-  cholesky.solve(V);
+  SpdSolver spd(space.pattern());
+  spd.factorise(1.0, M, 0.0, A);
+  spd.solve(V);
   return {0, x, V.col(0).asDiagonal() * curvature.nu(), curvature.H()};
 }
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/flows/bgn_system.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
@@ -25,7 +25,7 @@ class WeakWeingarten {
 
  private:
   const SurfaceSpace& space_;
-  SparseCholesky cholesky_;
+  SpdSolver spd_;
   Field A_, H_and_A_;
 };
 

@@ -6,7 +6,7 @@
 #include "solver/error.hpp"
 #include "solver/flows/plane_waves.hpp"
 #include "solver/flows/regularity.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -84,9 +84,9 @@ Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u,
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
   Field w = epsilon * (A * u) + load_of_g / epsilon;
-  SparseCholesky cholesky(space.pattern());
-  cholesky.factorise(1.0, M, 0.0, A);
-  cholesky.solve(w);
+  SpdSolver spd(space.pattern());
+  spd.factorise(1.0, M, 0.0, A);
+  spd.solve(w);
   return w;
 }
 

@@ -38,7 +38,7 @@ CoupledDiffusionScheme::CoupledDiffusionScheme(const SurfaceSpace& space, int sp
       limits_(limits),
       M_(space.matrix()),
       A_(space.matrix()),
-      cholesky_(space.pattern()) {
+      spd_(space.pattern()) {
   for (int l = 0; l < species; ++l) {
     const double D = parameters_.diffusion[l];
     auto group = std::find_if(groups_.begin(), groups_.end(),
@@ -88,8 +88,8 @@ void CoupledDiffusionScheme::diffuse(const History<State>& history, int q, doubl
   u = loads.leftCols(u.cols()) - Mu_sum_ / tau;
   for (EqualDiffusion& group : groups_) {
     for (std::size_t c = 0; c < group.species.size(); ++c) group.u.col(c) = u.col(group.species[c]);
-    cholesky_.factorise(history.delta(q)[0] / tau, M_, group.D, A_);
-    cholesky_.solve(group.u);
+    spd_.factorise(history.delta(q)[0] / tau, M_, group.D, A_);
+    spd_.solve(group.u);
     for (std::size_t c = 0; c < group.species.size(); ++c) u.col(group.species[c]) = group.u.col(c);
   }
 }
@@ -102,8 +102,8 @@ void CoupledDiffusionScheme::move_regularised(const History<State>& history, int
   history.bdf_sum(q, &State::x, x_sum_);
   A_.multiply(x_sum_, A_x_sum_);
   next.v = loads.rightCols(3) + beta * A_x_sum_;
-  cholesky_.factorise(1.0, M_, parameters_.alpha + beta * tau, A_);
-  cholesky_.solve(next.v);
+  spd_.factorise(1.0, M_, parameters_.alpha + beta * tau, A_);
+  spd_.solve(next.v);
   next.x = (tau * next.v - x_sum_) / delta_0;
 }
 
@@ -113,8 +113,8 @@ void CoupledDiffusionScheme::move_dynamic(const History<State>& history, int q, 
   const double delta_0 = history.delta(q)[0];
   history.bdf_sum(q, &State::Mv, Mv_sum_);
   next.v = loads.rightCols(3) - Mv_sum_ / tau;
-  cholesky_.factorise(delta_0 / tau, M_, parameters_.alpha, A_);
-  cholesky_.solve(next.v);
+  spd_.factorise(delta_0 / tau, M_, parameters_.alpha, A_);
+  spd_.solve(next.v);
   history.bdf_sum(q, &State::x, x_sum_);
   next.x = (tau * next.v - x_sum_) / delta_0;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/flows/regularity.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
@@ -79,7 +79,7 @@ class CoupledDiffusionScheme {
   RegularityLimits limits_;
   std::vector<EqualDiffusion> groups_;
   SymmetricMatrix M_, A_;
-  SparseCholesky cholesky_;
+  SpdSolver spd_;
   Field x_tilde_, u_tilde_, x_sum_, A_x_sum_, Mu_sum_, Mv_sum_;
 };
 

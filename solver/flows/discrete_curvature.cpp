@@ -6,7 +6,7 @@
 namespace esfem {
 
 DiscreteCurvature::DiscreteCurvature(const SurfaceSpace& space)
-    : space_(space), M_(space.matrix()), A_(space.matrix()), cholesky_(space.pattern()) {}
+    : space_(space), M_(space.matrix()), A_(space.matrix()), spd_(space.pattern()) {}
 
 void DiscreteCurvature::compute(const Field& x) {
   const auto normal = [](const PointData<0>& p, Integrand<3, 0>& load) {
@@ -18,8 +18,8 @@ void DiscreteCurvature::compute(const Field& x) {
 
   kappa_and_nu_.resize(x.rows(), 6);
   kappa_and_nu_ << kappa_, nu_;
-  cholesky_.factorise(1.0, M_, 0.0, A_);
-  cholesky_.solve(kappa_and_nu_);
+  spd_.factorise(1.0, M_, 0.0, A_);
+  spd_.solve(kappa_and_nu_);
 
   kappa_ = kappa_and_nu_.leftCols(3);
   nu_ = kappa_and_nu_.rightCols(3);
@@ -33,8 +33,8 @@ double DiscreteCurvature::deviation(const Field& nu, const Field& H) {
   Field both(space_.dofs(), 6);
   both << kappa_, H.col(0).asDiagonal() * nu - kappa_;
   Field smooth = M_ * both;
-  cholesky_.factorise(1.0, M_, length * length, A_);
-  cholesky_.solve(smooth);
+  spd_.factorise(1.0, M_, length * length, A_);
+  spd_.solve(smooth);
   return std::sqrt(M_.energy(smooth.rightCols(3)) / M_.energy(smooth.leftCols(3)));
 }
 

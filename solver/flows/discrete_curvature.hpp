@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/assembly/surface_space.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -46,7 +46,7 @@ class DiscreteCurvature {
  private:
   const SurfaceSpace& space_;
   SymmetricMatrix M_, A_;
-  SparseCholesky cholesky_;
+  SpdSolver spd_;
   Field kappa_, nu_, H_;
   Field kappa_and_nu_;  ///< right-hand sides and solutions of the six systems with M
 };

@@ -7,7 +7,7 @@
 namespace esfem {
 
 DziukFlow::DziukFlow(const SurfaceSpace& space, const RegularityLimits& limits)
-    : space_(space), limits_(limits), M_(space.matrix()), A_(space.matrix()), cholesky_(space.pattern()) {}
+    : space_(space), limits_(limits), M_(space.matrix()), A_(space.matrix()), spd_(space.pattern()) {}
 
 void DziukFlow::step(const History<State>& history, int q, double tau, State& next) {
   const double delta_0 = history.delta(q)[0];
@@ -20,8 +20,8 @@ void DziukFlow::step(const History<State>& history, int q, double tau, State& ne
   history.bdf_sum(q, &State::x, sum_);
   M_.multiply(sum_, next.x);
   next.x /= -tau;
-  cholesky_.factorise(delta_0 / tau, M_, 1.0, A_);
-  cholesky_.solve(next.x);
+  spd_.factorise(delta_0 / tau, M_, 1.0, A_);
+  spd_.solve(next.x);
 
   next.v = (delta_0 * next.x + sum_) / tau;
   require_regular(space_, next.x, next.v, limits_);

@@ -6,7 +6,7 @@
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/regularity.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
@@ -45,7 +45,7 @@ class DziukFlow {
   const SurfaceSpace& space_;
   RegularityLimits limits_;
   SymmetricMatrix M_, A_;
-  SparseCholesky cholesky_;
+  SpdSolver spd_;
   Field x_tilde_, sum_;
 };
 

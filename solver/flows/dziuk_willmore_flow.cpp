@@ -5,7 +5,7 @@
 #include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/regularity.hpp"
 #include "solver/linalg/node_block_lu.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -219,9 +219,9 @@ DziukWillmoreFlow::State dziuk_willmore_state_on(const SurfaceSpace& space, cons
   assemble_willmore_force(space, x, state.w, state.v);
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
-  SparseCholesky cholesky(space.pattern());
-  cholesky.factorise(1.0, M, 0.0, A);
-  cholesky.solve(state.v);
+  SpdSolver spd(space.pattern());
+  spd.factorise(1.0, M, 0.0, A);
+  spd.solve(state.v);
   return state;
 }
 

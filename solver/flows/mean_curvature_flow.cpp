@@ -40,7 +40,7 @@ MeanCurvatureFlow::MeanCurvatureFlow(const SurfaceSpace& space, Variant variant,
       mass_factor_(1 / (space.length() * space.length())),
       M_(space.matrix()),
       A_(space.matrix()),
-      cholesky_(space.pattern()),
+      spd_(space.pattern()),
       reinitialisation_(space, variant.reinitialise, {}) {}
 
 void MeanCurvatureFlow::velocity(const Field& u, Field& v) {
@@ -49,8 +49,8 @@ void MeanCurvatureFlow::velocity(const Field& u, Field& v) {
     return;
   }
   v = loads_.leftCols(3);
-  cholesky_.factorise(mass_factor_, M_, 1.0, A_);
-  cholesky_.solve(v);
+  spd_.factorise(mass_factor_, M_, 1.0, A_);
+  spd_.solve(v);
 }
 
 void MeanCurvatureFlow::Fields::complete(State& state) const {
@@ -76,8 +76,8 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   history.bdf_sum(q, &State::u, sum_);
   M_.multiply(sum_, M_sum_);
   next.u = loads_.rightCols(4) - M_sum_ / tau;
-  cholesky_.factorise(delta_0 / tau, M_, 1.0, A_);
-  cholesky_.solve(next.u);
+  spd_.factorise(delta_0 / tau, M_, 1.0, A_);
+  spd_.solve(next.u);
   if (variant_.normalise) next.u.leftCols(3).rowwise().normalize();
 
   // Where ũ comes from the surface, a step with it would be explicit in x, and stable for tau < c h² alone.
@@ -123,20 +123,20 @@ MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const F
 MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space, const Field& x) {
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
-  SparseCholesky cholesky(space.pattern());
-  cholesky.factorise(1.0, M, 0.0, A);
+  SpdSolver spd(space.pattern());
+  spd.factorise(1.0, M, 0.0, A);
   const auto normals = [](const PointData<3>& p, Integrand<3, 0>& load) {
     for (int l = 0; l < 3; ++l) load.value[l] = p.normal[l];
   };
   Field nu, H;
   space.assemble_load<3, 3, 0>(x, x, normals, nu);
-  cholesky.solve(nu);
+  spd.solve(nu);
   nu.rowwise().normalize();
   const auto divergence = [](const PointData<3>& p, Integrand<1, 0>& load) {
     load.value[0] = p.grad[0][0] + p.grad[1][1] + p.grad[2][2];
   };
   space.assemble_load<3, 1, 0>(x, nu, divergence, H);
-  cholesky.solve(H);
+  spd.solve(H);
   return mean_curvature_state(0, x, nu, H);
 }
 

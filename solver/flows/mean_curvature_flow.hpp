@@ -5,7 +5,7 @@
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/regularity.hpp"
 #include "solver/flows/reinitialisation.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 #include "solver/mesh/write_vtu.hpp"
 #include "solver/time/history.hpp"
 
@@ -64,7 +64,7 @@ class MeanCurvatureFlow {
   RegularityLimits limits_;
   double mass_factor_;  ///< 1/L²
   SymmetricMatrix M_, A_;
-  SparseCholesky cholesky_;
+  SpdSolver spd_;
   Reinitialisation<State, Fields> reinitialisation_;
   Field x_tilde_, u_tilde_, loads_, sum_, M_sum_;
 };

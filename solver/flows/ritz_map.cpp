@@ -2,7 +2,7 @@
 #include "solver/flows/ritz_map.hpp"
 
 #include "solver/assembly/lifted_points.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -22,9 +22,9 @@ Field ritz_map(const SurfaceSpace& space, const Field& x, const Surface& surface
   });
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
-  SparseCholesky cholesky(space.pattern());
-  cholesky.factorise(mass_factor, M, 1.0, A);
-  cholesky.solve(load);
+  SpdSolver spd(space.pattern());
+  spd.factorise(mass_factor, M, 1.0, A);
+  spd.solve(load);
   return load;
 }
 

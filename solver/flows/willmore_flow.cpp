@@ -5,7 +5,7 @@
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_terms.hpp"
 #include "solver/linalg/gmres.hpp"
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -168,10 +168,10 @@ WillmoreStart start_from(const SurfaceSpace& space, const Field& x, Field u, Fie
     start.theta = M * exact_w + rest;
     start.state.w = std::move(exact_w);
   } else {
-    SparseCholesky cholesky(space.pattern());
-    cholesky.factorise(1.0, M, 0.0, A);
+    SpdSolver spd(space.pattern());
+    spd.factorise(1.0, M, 0.0, A);
     start.state.w = -rest;
-    cholesky.solve(start.state.w);
+    spd.solve(start.state.w);
   }
   start.state.x = x;
   start.state.v = interpolated_velocity(u, start.state.w);

@@ -1,30 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/linalg/block_solver.hpp"
 
-#include <zmumps_c.h>
-
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <vector>
 
 #include "solver/error.hpp"
-#include "solver/linalg/metis_ordering.hpp"
-#include "solver/linalg/symmetric_mumps.hpp"
+#include "solver/linalg/symmetric_factor.hpp"
 
 namespace esfem {
 
-using ComplexMumps = SymmetricMumps<std::complex<double>, ZMUMPS_STRUC_C, zmumps_c>;
-
 namespace {
-
-/// The column of each entry.
-std::vector<int> columns(const SparsityPattern& pattern) {
-  std::vector<int> column;
-  for (int j = 0; j < pattern.size; ++j)
-    column.insert(column.end(), pattern.column_start[j + 1] - pattern.column_start[j], j);
-  return column;
-}
 
 constexpr int refined_columns = 4;
 
@@ -79,14 +66,14 @@ ColumnSizes attainable(const SymmetricMatrix& M, const SymmetricMatrix& A, doubl
 
 struct BlockSolver::Factor {
   std::shared_ptr<const SparsityPattern> pattern;
-  ComplexMumps mumps;
+  SymmetricFactor<std::complex<double>> factor;
   Eigen::MatrixXcd y;
   double alpha = 0, kappa = 0;
   ComplexRows b, refined, rest;
 
   explicit Factor(std::shared_ptr<const SparsityPattern> shared)
       : pattern(std::move(shared)),
-        mumps("block system", pattern->row, columns(*pattern), metis_ordering(*pattern), ComplexMumps::none),
+        factor(*pattern, {0}),
         b(pattern->size, 2 * refined_columns),
         refined(b),
         rest(b) {}
@@ -96,7 +83,7 @@ struct BlockSolver::Factor {
     y.resize(rest.rows(), refined_columns);
     y.real() = rest.leftCols<refined_columns>();
     y.imag() = rest.rightCols<refined_columns>();
-    mumps.solve(y.data(), refined_columns);
+    factor.solve(y);
     refined.leftCols<refined_columns>() += y.real();
     refined.rightCols<refined_columns>() += y.imag();
   }
@@ -121,14 +108,11 @@ void BlockSolver::factorise(double alpha, double beta, double gamma, const Symme
                             const SymmetricMatrix& A) {
   Factor& f = *factor_;
   check_system(alpha, beta, gamma, M, A);
-  if (!std::isfinite(M.values.sum() + A.values.sum()))
-    throw NumericsError("matrix to factorise is not finite");
   f.alpha = alpha;
   f.kappa = std::sqrt(gamma / (alpha * beta));
-  Eigen::Map<Eigen::VectorXcd> values(f.mumps.values(), M.values.size());
-  values.real() = M.values;
-  values.imag() = f.kappa * beta * A.values;
-  f.mumps.factorise();
+  f.factor.factorise([m = M.values.data(), s = A.values.data(), factor = f.kappa * beta](int k) {
+    return std::complex<double>(m[k], factor * s[k]);
+  });
 }
 
 void BlockSolver::solve(Field& r_to_u, Field& s_to_w) {
@@ -143,7 +127,7 @@ void BlockSolver::solve(Field& r_to_u, Field& s_to_w) {
   f.y.resize(r_to_u.rows(), r_to_u.cols());
   f.y.real() = f.kappa * r_to_u;
   f.y.imag() = s_to_w;
-  f.mumps.solve(f.y.data(), static_cast<int>(f.y.cols()));
+  f.factor.solve(f.y);
   r_to_u = f.y.real() / (f.kappa * f.alpha);
   s_to_w = f.y.imag();
 }

@@ -18,11 +18,9 @@ namespace esfem {
 ///   (M + i kappa beta A) y = kappa r + i s
 /// of half the size: its real part is kappa times the first line, its imaginary part the second, because
 /// kappa² alpha beta = gamma. Its real part M is positive definite, so that no pivoting is needed (Higham,
-/// Math. Comp. 67, 1998). Factorised by MUMPS in METIS's order;
-/// symbolic analysis once, numbers per call. Two processes get the same bits.
+/// Math. Comp. 67, 1998). Symbolic phase once, numbers per call.
 class BlockSolver {
  public:
-  /// Symbolic analysis. Throws NumericsError when it fails.
   explicit BlockSolver(std::shared_ptr<const SparsityPattern> pattern);
   ~BlockSolver();
   BlockSolver(const BlockSolver&) = delete;

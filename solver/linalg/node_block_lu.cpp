@@ -5,9 +5,13 @@
 
 #include "solver/error.hpp"
 
+// Present when UMFPACK's BLAS is OpenBLAS, which starts threads that nobody asked for.
+extern "C" void openblas_set_num_threads(int) __attribute__((weak));
+
 namespace esfem {
 
 NodeBlockLu::NodeBlockLu(const SparsityPattern& pattern, const BlockRows& rows) : rows_(rows) {
+  if (openblas_set_num_threads) openblas_set_num_threads(1);
   find_pattern(pattern);
   lu_.umfpackControl()[UMFPACK_STRATEGY] = UMFPACK_STRATEGY_SYMMETRIC;
   lu_.umfpackControl()[UMFPACK_ORDERING] = UMFPACK_ORDERING_METIS;

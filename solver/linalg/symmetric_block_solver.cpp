@@ -1,109 +1,106 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/linalg/symmetric_block_solver.hpp"
 
-#include <dmumps_c.h>
-
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
-#include <vector>
 
 #include "solver/error.hpp"
-#include "solver/linalg/metis_ordering.hpp"
-#include "solver/linalg/symmetric_mumps.hpp"
+#include "solver/linalg/gmres.hpp"
 
 namespace esfem {
-
-using RealMumps = SymmetricMumps<double, DMUMPS_STRUC_C, dmumps_c>;
-
 namespace {
 
-/// Calls visit(k, i, j) for each entry of the pattern, the k-th, in row i and column j.
-template <class Visit>
-void for_each_entry(const SparsityPattern& pattern, const Visit& visit) {
-  for (int j = 0; j < pattern.size; ++j)
-    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) visit(k, pattern.row[k], j);
-}
+/// Of the backward error, the residual relative to |right-hand side| + |matrix| |solution|; a direct solution
+/// with pivoting attains 1e-16.
+constexpr double largest_backward_error = 1e-15;
 
-/// Rows and columns of the lower triangle; unknowns 2i and 2i+1 are u and w of node i.
-std::pair<std::vector<int>, std::vector<int>> entries_of_blocks(const SparsityPattern& pattern) {
-  std::vector<int> row, column;
-  const auto add = [&](int i, int j) {
-    row.push_back(std::max(i, j));
-    column.push_back(std::min(i, j));
-  };
-  for_each_entry(pattern, [&](int, int i, int j) {
-    add(2 * i, 2 * j);
-    add(2 * i + 1, 2 * j + 1);
-    add(2 * i + 1, 2 * j);
-    if (i != j) add(2 * i, 2 * j + 1);
-  });
-  return {row, column};
-}
-
-/// Both unknowns of a node follow each other.
-std::vector<int> ordering_of_blocks(const SparsityPattern& pattern) {
-  std::vector<int> ordering;
-  for (const int node : metis_ordering(pattern)) {
-    ordering.push_back(2 * node);
-    ordering.push_back(2 * node + 1);
-  }
-  return ordering;
-}
+constexpr int most_refinements = 5, most_gmres_iterations = 200;
 
 }  // namespace
 
-struct SymmetricBlockSolver::Factor {
-  std::shared_ptr<const SparsityPattern> pattern;
-  RealMumps mumps;
-  Eigen::VectorXd y;
-
-  Factor(std::shared_ptr<const SparsityPattern> shared,
-         std::pair<std::vector<int>, std::vector<int>> rows_and_columns)
-      : pattern(std::move(shared)),
-        mumps("symmetric block system", std::move(rows_and_columns.first), std::move(rows_and_columns.second),
-              ordering_of_blocks(*pattern), RealMumps::by_threshold),
-        y(2 * pattern->size) {}
-};
-
 SymmetricBlockSolver::SymmetricBlockSolver(std::shared_ptr<const SparsityPattern> pattern)
-    : factor_(std::make_unique<Factor>(pattern, entries_of_blocks(*pattern))) {}
-
-SymmetricBlockSolver::~SymmetricBlockSolver() = default;
+    : pattern_(std::move(pattern)), factor_(*pattern_, {0, 0}, SmallPivots::are_replaced) {}
 
 void SymmetricBlockSolver::factorise(const SymmetricMatrix& P, const SymmetricMatrix& Q,
                                      const SymmetricMatrix& R) {
-  Factor& f = *factor_;
-  if (P.pattern != f.pattern || Q.pattern != f.pattern || R.pattern != f.pattern)
+  if (P.pattern != pattern_ || Q.pattern != pattern_ || R.pattern != pattern_)
     throw InputError("symmetric block system: matrix is not on the pattern that was analysed");
-  if (!std::isfinite(P.values.sum() + Q.values.sum() + R.values.sum()))
-    throw NumericsError("matrix to factorise is not finite");
-  double* value = f.mumps.values();
-  for_each_entry(*f.pattern, [&](int k, int i, int j) {
-    *value++ = P.values[k];
-    *value++ = R.values[k];
-    *value++ = Q.values[k];
-    if (i != j) *value++ = Q.values[k];
+  P_ = &P, Q_ = &Q, R_ = &R;
+  factor_.factorise([&](int k) {
+    Eigen::Matrix2d block;
+    block << P.values[k], Q.values[k], Q.values[k], R.values[k];
+    return block;
   });
-  f.mumps.factorise();
+  row_size_.setZero(2 * pattern_->size, 1);
+  for (int j = 0; j < pattern_->size; ++j)
+    for (int k = pattern_->column_start[j]; k < pattern_->column_start[j + 1]; ++k) {
+      const double q = std::abs(Q.values[k]);
+      const Eigen::Vector2d sizes(std::abs(P.values[k]) + q, std::abs(R.values[k]) + q);
+      row_size_.middleRows<2>(2 * j) += sizes;
+      if (const int i = pattern_->row[k]; i != j) row_size_.middleRows<2>(2 * i) += sizes;
+    }
+}
+
+/// out = K y; rows 2i and 2i + 1 are those of node i.
+void SymmetricBlockSolver::multiply(const Field& y, Field& out) const {
+  out.setZero(y.rows(), 1);
+  const auto add = [&](int k, int i, int j) {
+    const double u = y(2 * j), w = y(2 * j + 1);
+    out(2 * i) += P_->values[k] * u + Q_->values[k] * w;
+    out(2 * i + 1) += Q_->values[k] * u + R_->values[k] * w;
+  };
+  for (int j = 0; j < pattern_->size; ++j)
+    for (int k = pattern_->column_start[j]; k < pattern_->column_start[j + 1]; ++k) {
+      add(k, pattern_->row[k], j);
+      if (pattern_->row[k] != j) add(k, j, pattern_->row[k]);
+    }
 }
 
 void SymmetricBlockSolver::solve(Field& r_to_u, Field& s_to_w) {
-  Factor& f = *factor_;
-  const int n = f.pattern->size;
+  const int n = pattern_->size;
   if (r_to_u.rows() != n || s_to_w.rows() != n || r_to_u.cols() != 1 || s_to_w.cols() != 1) {
     throw InputError(
         format("right-hand sides of a symmetric block system are %td x %td and %td x %td, expected %d x 1",
                r_to_u.rows(), r_to_u.cols(), s_to_w.rows(), s_to_w.cols(), n));
   }
-  for (int i = 0; i < n; ++i) {
-    f.y[2 * i] = r_to_u(i);
-    f.y[2 * i + 1] = s_to_w(i);
+  right_.resize(2 * n, 1);
+  for (int i = 0; i < n; ++i) right_.middleRows<2>(2 * i) << r_to_u(i), s_to_w(i);
+
+  y_ = right_;
+  factor_.solve(y_);
+  const auto backward_error = [&] {
+    multiply(y_, correction_);
+    correction_ = right_ - correction_;
+    const double size = right_.norm() + row_size_.cwiseProduct(y_).norm();
+    return correction_.norm() / (size + std::numeric_limits<double>::min());
+  };
+  double error = backward_error();
+  for (int n = 0; n < most_refinements && error > largest_backward_error; ++n) {
+    factor_.solve(correction_);
+    y_ += correction_;
+    error = backward_error();
   }
-  f.mumps.solve(f.y.data(), 1);
+  if (!(error <= largest_backward_error)) {
+    // K P^-1 z = the rest of the right-hand side, P the factors
+    const double size = right_.norm() + row_size_.cwiseProduct(y_).norm();
+    const Eigen::VectorXd rest = correction_;
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(rest.size());
+    Field work;
+    const auto map = [&](const Eigen::VectorXd& from, Eigen::VectorXd& to) {
+      work = from;
+      factor_.solve(work);
+      multiply(work, correction_);
+      to = correction_;
+    };
+    solve_gmres(map, rest, largest_backward_error * size / rest.norm(), most_gmres_iterations, z);
+    work = z;
+    factor_.solve(work);
+    y_ += work;
+  }
   for (int i = 0; i < n; ++i) {
-    r_to_u(i) = f.y[2 * i];
-    s_to_w(i) = f.y[2 * i + 1];
+    r_to_u(i) = y_(2 * i);
+    s_to_w(i) = y_(2 * i + 1);
   }
 }
 

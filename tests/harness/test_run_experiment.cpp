@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
-#include <thread>
 
 #include "solver/analysis/table.hpp"
 
@@ -43,11 +42,10 @@ class RunExperiment : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder); }
 
-  /// Variables of the environment may stand in front: run("--list", "OMP_NUM_THREADS=7").
-  Outcome run(const std::string& arguments, const std::string& environment = "") const {
+  Outcome run(const std::string& arguments) const {
     const fs::path out = folder / "stdout", err = folder / "stderr";
-    const std::string command = "cd " + folder.string() + " && exec env -u OMP_THREAD_LIMIT " + environment +
-                                " " ESFEM_BINARY_DIR "/bin/fake_experiment " + arguments + " >" +
+    const std::string command = "cd " + folder.string() +
+                                " && exec " ESFEM_BINARY_DIR "/bin/fake_experiment " + arguments + " >" +
                                 out.string() + " 2>" + err.string();
     const int status = std::system(command.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
@@ -262,24 +260,17 @@ TEST_F(RunExperiment, WritesToStandardOutputWithoutOutput) {
   EXPECT_EQ(table_from_json(json, "stdout").rows.size(), 1u);
 }
 
-TEST_F(RunExperiment, LibrariesStartNoThreadsOfTheirOwn) {
-  run("--cell h0_tau0 --output cell.json", "OMP_NUM_THREADS=7 OPENBLAS_NUM_THREADS=7");
-  const nlohmann::json row = read_json((folder / "cell.json").string()).at("rows").at(0);
-  for (const char* variable : {"OMP_NUM_THREADS", "OMP_THREAD_LIMIT", "OPENBLAS_NUM_THREADS"})
-    EXPECT_EQ(row[variable], "1") << variable;
-  EXPECT_EQ(row["thread_count"], 1);
-}
-
 TEST_F(RunExperiment, ThreadsAreThoseAskedFor) {
-  for (const char* option : {"--threads 2", "--threads=2"}) {
-    run(std::string("--cell h0_tau0 --output cell.json ") + option);
-    const nlohmann::json json = read_json((folder / "cell.json").string());
-    EXPECT_EQ(json["provenance"]["threads"], 2);
-    EXPECT_EQ(json["rows"][0]["OMP_THREAD_LIMIT"], "2");
-    // Shows that the factorisation would use more threads than one if it were let.
-    if (std::thread::hardware_concurrency() > 1) {
-      EXPECT_GT(json["rows"][0]["thread_count"], 1);
-    }
+  const auto row_of = [&](const std::string& options) {
+    run("--cell h0_tau0 --output cell.json" + options);
+    return read_json((folder / "cell.json").string());
+  };
+  EXPECT_EQ(row_of("")["rows"][0]["threads_of_a_factor"], 1);
+  for (const char* option : {" --threads 2", " --threads=2"}) {
+    const nlohmann::json table = row_of(option);
+    EXPECT_EQ(table["provenance"]["threads"], 2);
+    EXPECT_EQ(table["rows"][0]["threads_of_a_factor"], 2);
+    EXPECT_EQ(table["rows"][0]["threads_started"], 0) << "by a BLAS";
   }
 }
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An experiment without a flow: its errors are the formula h^2 + tau^3 on a grid of four cells. Its own
 // options make a cell fail, run out of memory, write a file, wait, or say how many threads the process has.
-#include <cholmod.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <new>
 
 #include "experiments/harness/experiment.hpp"
 #include "solver/error.hpp"
+#include "solver/linalg/node_block_lu.hpp"
+#include "solver/thread_count.hpp"
 
 namespace esfem {
 namespace {
@@ -19,27 +21,21 @@ struct FakeOptions {
   int milliseconds = 0, earlier_seconds = 0;
 };
 
-/// A supernodal factorisation of a full matrix: CHOLMOD's OpenMP and the threads of BLAS have something to
-/// do.
+/// The factorisation of a full matrix: a BLAS that is called has something to do for its threads.
 void factorise() {
-  const size_t n = 400;
-  cholmod_common common;
-  cholmod_start(&common);
-  common.supernodal = CHOLMOD_SUPERNODAL;
-  cholmod_dense* full = cholmod_ones(n, n, CHOLMOD_REAL, &common);
-  for (size_t i = 0; i < n; ++i) static_cast<double*>(full->x)[i * (n + 1)] = 2 * n;
-  cholmod_sparse* unsymmetric = cholmod_dense_to_sparse(full, 1, &common);
-  cholmod_sparse* matrix = cholmod_copy(unsymmetric, 1, 1, &common);
-  cholmod_factor* factor = cholmod_analyze(matrix, &common);
-  cholmod_factorize(matrix, factor, &common);
-  cholmod_free_factor(&factor, &common);
-  cholmod_free_sparse(&matrix, &common);
-  cholmod_free_sparse(&unsymmetric, &common);
-  cholmod_free_dense(&full, &common);
-  cholmod_finish(&common);
+  const int n = 400;
+  SparsityPattern pattern;
+  pattern.size = n;
+  pattern.column_start = {0};
+  for (int j = 0; j < n; ++j) {
+    for (int i = j; i < n; ++i) pattern.row.push_back(i);
+    pattern.column_start.push_back(pattern.entry_count());
+  }
+  NodeBlockLu lu(pattern, {{0}});
+  lu.factorise([](int, bool, int, int) { return std::rand() % 100; });
 }
 
-int thread_count() {
+int threads_of_process() {
   namespace fs = std::filesystem;
   return std::distance(fs::directory_iterator("/proc/self/task"), fs::directory_iterator());
 }
@@ -55,10 +51,10 @@ Row run(Row row, const std::string& name, const std::string& folder, const FakeO
   row.seconds = fake.earlier_seconds;
   row.nodes = std::lround(1 / (row.h * row.h));
   row.errors["u"]["nodal_L2"] = row.h * row.h + std::pow(row.tau, 3);
+  const int before = threads_of_process();
   factorise();
-  row.more["thread_count"] = thread_count();
-  for (const char* variable : {"OMP_NUM_THREADS", "OMP_THREAD_LIMIT", "OPENBLAS_NUM_THREADS"})
-    row.more[variable] = std::getenv(variable) ? std::getenv(variable) : "unset";
+  row.more["threads_started"] = threads_of_process() - before;
+  row.more["threads_of_a_factor"] = thread_count();
   return row;
 }
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/error.hpp"
-#include "solver/linalg/thread_limit.hpp"
+#include "tests/peers/thread_limit.hpp"
 
 namespace esfem {
 

@@ -1,17 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/linalg/sparse_cholesky.hpp"
+#include "tests/peers/cholmod_solver.hpp"
+
+#include <cholmod.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "solver/error.hpp"
-#include "solver/linalg/cholmod_pattern.hpp"
-#include "solver/linalg/thread_limit.hpp"
+#include "tests/peers/thread_limit.hpp"
 
 namespace esfem {
+namespace {
 
-struct SparseCholesky::Cholmod {
+/// The pattern as CHOLMOD sees it: a symmetric matrix without values, which CHOLMOD only reads and which must
+/// outlive the result.
+cholmod_sparse cholmod_pattern(const SparsityPattern& pattern) {
+  cholmod_sparse lower = {};
+  lower.nrow = lower.ncol = pattern.size;
+  lower.nzmax = pattern.row.size();
+  lower.p = const_cast<int*>(pattern.column_start.data());
+  lower.i = const_cast<int*>(pattern.row.data());
+  lower.stype = -1;
+  lower.itype = CHOLMOD_INT;
+  lower.xtype = CHOLMOD_PATTERN;
+  lower.dtype = CHOLMOD_DOUBLE;
+  lower.sorted = lower.packed = true;
+  return lower;
+}
+
+}  // namespace
+
+struct CholmodSolver::Cholmod {
   std::shared_ptr<const SparsityPattern> pattern;
   cholmod_common common;
   cholmod_factor* factor = nullptr;
@@ -27,7 +47,7 @@ struct SparseCholesky::Cholmod {
   void permute();
 };
 
-SparseCholesky::Cholmod::Cholmod(std::shared_ptr<const SparsityPattern> shared) : pattern(std::move(shared)) {
+CholmodSolver::Cholmod::Cholmod(std::shared_ptr<const SparsityPattern> shared) : pattern(std::move(shared)) {
   cholmod_start(&common);
   common.print = 0;
   common.error_handler = nullptr;
@@ -41,7 +61,7 @@ SparseCholesky::Cholmod::Cholmod(std::shared_ptr<const SparsityPattern> shared) 
   common.nrelax[2] = 192;
 }
 
-SparseCholesky::Cholmod::~Cholmod() {
+CholmodSolver::Cholmod::~Cholmod() {
   cholmod_free_factor(&factor, &common);
   cholmod_free_sparse(&permuted, &common);
   cholmod_free_dense(&solution, &common);
@@ -50,7 +70,7 @@ SparseCholesky::Cholmod::~Cholmod() {
   cholmod_finish(&common);
 }
 
-void SparseCholesky::Cholmod::analyse() {
+void CholmodSolver::Cholmod::analyse() {
   cholmod_sparse lower = cholmod_pattern(*pattern);
   factor = cholmod_analyze(&lower, &common);
   if (!factor)
@@ -58,7 +78,7 @@ void SparseCholesky::Cholmod::analyse() {
                                pattern->size, common.status));
 }
 
-void SparseCholesky::Cholmod::permute() {
+void CholmodSolver::Cholmod::permute() {
   const int n = pattern->size;
   permuted = cholmod_allocate_sparse(n, n, pattern->row.size(), false, true, -1, CHOLMOD_REAL, &common);
   if (!permuted) throw NumericsError("out of memory in the symbolic Cholesky analysis");
@@ -86,16 +106,20 @@ void SparseCholesky::Cholmod::permute() {
   });
 }
 
-SparseCholesky::SparseCholesky(std::shared_ptr<const SparsityPattern> pattern)
+CholmodSolver::CholmodSolver(std::shared_ptr<const SparsityPattern> pattern)
     : cholmod_(std::make_unique<Cholmod>(std::move(pattern))) {
   const ThreadLimit one_thread;
   cholmod_->analyse();
   cholmod_->permute();
 }
 
-SparseCholesky::~SparseCholesky() = default;
+CholmodSolver::~CholmodSolver() = default;
 
-void SparseCholesky::factorise(double a, const SymmetricMatrix& M, double b, const SymmetricMatrix& A) {
+std::size_t CholmodSolver::memory() const {
+  return cholmod_->common.memory_inuse;
+}
+
+void CholmodSolver::factorise(double a, const SymmetricMatrix& M, double b, const SymmetricMatrix& A) {
   const ThreadLimit one_thread;
   Cholmod& c = *cholmod_;
   double* values = static_cast<double*>(c.permuted->x);
@@ -119,7 +143,7 @@ void SparseCholesky::factorise(double a, const SymmetricMatrix& M, double b, con
   c.factorised = true;
 }
 
-void SparseCholesky::solve(Field& rhs) {
+void CholmodSolver::solve(Field& rhs) {
   const ThreadLimit one_thread;
   Cholmod& c = *cholmod_;
   if (rhs.rows() != c.pattern->size)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/linalg/thread_limit.hpp"
+#include "tests/peers/thread_limit.hpp"
 
 #include <algorithm>
 #include <cstdlib>
