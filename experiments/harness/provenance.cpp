@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/harness/provenance.hpp"
-#include "solver/thread_count.hpp"
 
 #include <limits.h>
 #include <unistd.h>
@@ -10,6 +9,7 @@
 #include <iterator>
 #include <set>
 
+#include "solver/thread_count.hpp"
 #include "solver/time/checkpoint.hpp"
 
 namespace esfem {

@@ -67,7 +67,6 @@ ColumnSizes attainable(const SymmetricMatrix& M, const SymmetricMatrix& A, doubl
 struct BlockSolver::Factor {
   std::shared_ptr<const SparsityPattern> pattern;
   SymmetricFactor<std::complex<double>> factor;
-  Eigen::MatrixXcd y;
   double alpha = 0, kappa = 0;
   ComplexRows b, refined, rest;
 
@@ -80,12 +79,13 @@ struct BlockSolver::Factor {
 
   /// One iteration of the refinement.
   void add_solution_of_rest() {
-    y.resize(rest.rows(), refined_columns);
-    y.real() = rest.leftCols<refined_columns>();
-    y.imag() = rest.rightCols<refined_columns>();
-    factor.solve(y);
-    refined.leftCols<refined_columns>() += y.real();
-    refined.rightCols<refined_columns>() += y.imag();
+    factor.solve(
+        refined_columns,
+        [&](int i, int c) { return std::complex<double>(rest(i, c), rest(i, refined_columns + c)); },
+        [&](int i, int c, const std::complex<double>& y) {
+          refined(i, c) += y.real();
+          refined(i, refined_columns + c) += y.imag();
+        });
   }
 };
 
@@ -124,12 +124,13 @@ void BlockSolver::solve(Field& r_to_u, Field& s_to_w) {
                "the same number of columns",
                r_to_u.rows(), r_to_u.cols(), s_to_w.rows(), s_to_w.cols(), f.pattern->size));
   }
-  f.y.resize(r_to_u.rows(), r_to_u.cols());
-  f.y.real() = f.kappa * r_to_u;
-  f.y.imag() = s_to_w;
-  f.factor.solve(f.y);
-  r_to_u = f.y.real() / (f.kappa * f.alpha);
-  s_to_w = f.y.imag();
+  f.factor.solve(
+      static_cast<int>(r_to_u.cols()),
+      [&](int i, int c) { return std::complex<double>(f.kappa * r_to_u(i, c), s_to_w(i, c)); },
+      [&](int i, int c, const std::complex<double>& y) {
+        r_to_u(i, c) = y.real() / (f.kappa * f.alpha);
+        s_to_w(i, c) = y.imag();
+      });
 }
 
 std::optional<int> BlockSolver::refine(double alpha, double beta, double gamma, const SymmetricMatrix& M,

@@ -15,9 +15,6 @@
 namespace esfem {
 namespace {
 
-/// Right-hand sides that are solved together.
-constexpr int most_columns = 4;
-
 /// Multiplications below which threads cost more than they save: half a millisecond.
 constexpr double least_parallel_work = 1e7;
 
@@ -272,40 +269,31 @@ void SymmetricFactor<T, b>::extend_add(int child, const FrontMatrix<T>& parent, 
 }
 
 template <class T, int b>
-void SymmetricFactor<T, b>::solve(Right& right) {
-  if (right.rows() != unknowns())
-    throw InputError(format("right-hand side has %td rows, expected %d", right.rows(), unknowns()));
+void SymmetricFactor<T, b>::require_factor(Eigen::Index rows) const {
+  if (rows != unknowns())
+    throw InputError(format("right-hand side has %td rows, expected %d", rows, unknowns()));
   if (!factorised_) throw NumericsError("nothing is factorised to solve with");
-  for (int first = 0; first < right.cols(); first += most_columns) {
-    switch (std::min<int>(most_columns, right.cols() - first)) {
-    case 1:
-      solve_columns<1>(right, first);
-      break;
-    case 2:
-      solve_columns<2>(right, first);
-      break;
-    case 3:
-      solve_columns<3>(right, first);
-      break;
-    default:
-      solve_columns<most_columns>(right, first);
-    }
+}
+
+template <class T, int b>
+void SymmetricFactor<T, b>::solve_columns(int columns) {
+  switch (columns) {
+  case 1:
+    return solve_columns<1>();
+  case 2:
+    return solve_columns<2>();
+  case 3:
+    return solve_columns<3>();
+  case 4:
+    return solve_columns<4>();
   }
 }
 
 template <class T, int b>
 template <int columns>
-void SymmetricFactor<T, b>::solve_columns(Right& right, int first_column) {
-  const auto for_each_number = [&](auto visit) {
-    T* x = x_.data();
-    for (const int node : tree_.ordering)
-      for (int a = 0; a < b; ++a)
-        for (int c = 0; c < columns; ++c) visit(*x++, right(b * node + a, first_column + c));
-  };
-  for_each_number([](T& x, const T& number) { x = number; });
+void SymmetricFactor<T, b>::solve_columns() {
   for_each_front(upwards, [&](int f, Workspace& workspace) { solve_forward<columns>(f, workspace); });
   for_each_front(downwards, [&](int f, Workspace& workspace) { solve_backward<columns>(f, workspace); });
-  for_each_number([](const T& x, T& number) { number = x; });
 }
 
 /// y = L^-1 x for the rows that the front eliminates, then D^-1 y; what their elimination adds to its other

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <complex>
 #include <functional>
@@ -61,7 +62,25 @@ class SymmetricFactor {
 
   /// Solves for all columns in place. Throws InputError when the number of rows is wrong, NumericsError when
   /// nothing is factorised.
-  void solve(Right& right);
+  void solve(Right& right) {
+    require_factor(right.rows());
+    solve(
+        static_cast<int>(right.cols()), [&](int row, int c) { return right(row, c); },
+        [&](int row, int c, const T& number) { right(row, c) = number; });
+  }
+
+  /// The same for right-hand sides read(row, column), of which each number of the solution goes to
+  /// write(row, column, number).
+  template <class Read, class Write>
+  void solve(int columns, const Read& read, const Write& write) {
+    require_factor(unknowns());
+    for (int first = 0; first < columns; first += most_columns) {
+      const int count = std::min(most_columns, columns - first);
+      for_each_number(count, [&](T& x, int row, int c) { x = read(row, first + c); });
+      solve_columns(count);
+      for_each_number(count, [&](const T& x, int row, int c) { write(row, first + c, x); });
+    }
+  }
 
   /// Bytes of the factor, of the update matrices and of the work space.
   std::ptrdiff_t memory() const;
@@ -102,6 +121,18 @@ class SymmetricFactor {
     }
   }
 
+  /// Right-hand sides that are solved together.
+  static constexpr int most_columns = 4;
+
+  /// Calls visit(number of x_, row, column) in the order of elimination.
+  template <class Visit>
+  void for_each_number(int columns, const Visit& visit) {
+    T* x = x_.data();
+    for (const int node : tree_.ordering)
+      for (int a = 0; a < b; ++a)
+        for (int c = 0; c < columns; ++c) visit(*x++, b * node + a, c);
+  }
+
   int unknowns() const { return b * static_cast<int>(tree_.ordering.size()); }
   void place_fronts();
   void place_entries();
@@ -117,8 +148,10 @@ class SymmetricFactor {
   double scale_of_row(const PackedMatrix<T>& L, int row) const;
   NumericsError bad_pivot(int unknown, const T& pivot) const;
 
+  void require_factor(Eigen::Index rows) const;
+  void solve_columns(int columns);
   template <int columns>
-  void solve_columns(Right& right, int first_column);
+  void solve_columns();
   template <int columns>
   void solve_forward(int f, Workspace& workspace);
   template <int columns>
