@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Convergence figures: errors against step size or mesh width, log-log, with reference slopes."""
+import functools
 import math
 import textwrap
 from dataclasses import dataclass
@@ -295,15 +296,16 @@ def _places(axes, panel, x_range, y_range):
     orders, looks, owners = zip(*references) if references else ((), (), ())
     labels = [f"$O({SYMBOLS[panel.variable]}^{{{p:g}}})$" for p in orders]
     placements = place_slopes(size, polylines, [p * per_decade[1] / per_decade[0] for p in orders],
-                              [_label_size(axes, label) for label in labels], owners)
+                              [_label_size(label) for label in labels], owners)
     return None if placements is None else list(zip(labels, looks, placements))
 
 
-def _label_size(axes, label):
-    text = axes.text(0, 0, label, fontsize=8.5)
-    box = text.get_window_extent()
-    text.remove()
-    return np.array(box.size) * 72 / axes.figure.dpi
+@functools.cache
+def _label_size(label):
+    """In points. The same in all figures, and formulas are parsed slowly."""
+    figure = Figure()
+    box = figure.text(0, 0, label, fontsize=8.5).get_window_extent()
+    return np.array(box.size) * 72 / figure.dpi
 
 
 def _draw_reference(axes, label, look, placement):

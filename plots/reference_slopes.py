@@ -35,6 +35,8 @@ def place_slopes(size, polylines, slopes, label_sizes, owners=None):
     clear = to_data  # of the data and of what has been placed
     placements = []
     for slope, label_size, owner in zip(slopes, label_sizes, owners or [None] * len(slopes)):
+        if placements:
+            clear = np.minimum(clear, _distances(size, taken))
         label_size = np.asarray(label_size, float)
         placement = None
         if owner is not None:
@@ -44,9 +46,8 @@ def place_slopes(size, polylines, slopes, label_sizes, owners=None):
         if placement is None:
             return None
         placements.append(placement)
-        taken = _samples(np.array([placement.start, placement.end]))
         box = _box_samples(np.array([placement.label]), label_size)[0]
-        clear = np.minimum(clear, _distances(size, np.concatenate([taken, box])))
+        taken = np.concatenate([_samples(np.array([placement.start, placement.end])), box])
     return placements
 
 
@@ -105,30 +106,30 @@ def _box_samples(corners, size):
 def _place(size, to_data, free, slope, label_size):
     """The best place for one line: as long as possible, its farthest point as near to the data as possible."""
     longest = min(0.4 * size[0], 0.45 * size[1] / slope)
-    best = None
+    best, least = None, np.inf
     for width in longest * np.array([1, 0.8, 0.6, 0.45]):
         extent = np.array([width, slope * width])
         x, y = np.meshgrid(*(np.arange(BORDER, s - e - BORDER, 2 * GRID) for s, e in zip(size, extent)))
         starts = np.stack([x.ravel(), y.ravel()], axis=-1)
-        along = starts[:, None, :] + extent * np.linspace(0, 1, 25)[:, None]
-        starts = starts[np.min(_look_up(free, along), axis=1) >= LINE_CLEARANCE]
+        for t in np.linspace(0, 1, 25):
+            starts = starts[_look_up(free, starts + t * extent) >= LINE_CLEARANCE]
         if not len(starts):
             continue
         along = starts[:, None, :] + extent * np.linspace(0, 1, 25)[:, None]
         length = np.hypot(*extent)
         costs = np.max(_look_up(to_data, along), axis=1) + 0.5 * (np.hypot(longest, slope * longest) - length)
         for fraction in (0.5, 0.35, 0.65, 0.2, 0.8):
-            foot = starts + fraction * extent
+            total = costs + 4 * abs(fraction - 0.5)  # the label near the middle
             for side in (1, -1):  # to the right below the line, to the left above it
-                corner = foot + side * np.array([1, -1]) * LABEL_OFFSET
-                corner = corner - (np.array([0, label_size[1]]) if side > 0 else np.array([label_size[0], 0]))
-                total = costs + 4 * abs(fraction - 0.5)  # the label near the middle
-                boxes = _box_samples(corner, label_size)
-                inside = np.all((corner >= BORDER) & (corner + label_size <= size - BORDER), axis=1)
-                clear = inside & (np.min(_look_up(free, boxes), axis=1) >= LABEL_CLEARANCE)
-                if not clear.any():
-                    continue
-                k = np.argmin(np.where(clear, total, np.inf))
-                if best is None or total[k] < best[0]:
-                    best = (total[k], Placement(tuple(starts[k]), tuple(starts[k] + extent), tuple(corner[k])))
-    return best and best[1]
+                shift = fraction * extent + side * np.array([1, -1]) * LABEL_OFFSET
+                shift -= np.array([0, label_size[1]]) if side > 0 else np.array([label_size[0], 0])
+                better = np.flatnonzero(total < least)
+                corner = starts[better] + shift
+                better = better[np.all((corner >= BORDER) & (corner + label_size <= size - BORDER), axis=1)]
+                boxes = _box_samples(starts[better] + shift, label_size)
+                better = better[np.min(_look_up(free, boxes), axis=1) >= LABEL_CLEARANCE]
+                if len(better):
+                    k = better[np.argmin(total[better])]
+                    least = total[k]
+                    best = Placement(tuple(starts[k]), tuple(starts[k] + extent), tuple(starts[k] + shift))
+    return best

@@ -11,7 +11,7 @@ import unittest.mock
 from mcf_sphere import draw
 from script import run
 from table import has_series, read_table
-from testing import FOLDER, run_script, synthetic_table
+from testing import FOLDER, run_process, synthetic_table
 
 
 SCRIPT = os.path.join(FOLDER, "mcf_sphere.py")
@@ -31,7 +31,7 @@ class Script(unittest.TestCase):
         return [SCRIPT, path, os.path.join(self.folder, "figures"), *options]
 
     def run_script(self, table, *options):
-        return run_script("mcf_sphere", table, self.folder, *options)
+        return run_process("mcf_sphere", table, self.folder, *options)
 
     def complaint(self, command):
         """What the script says before it exits with 1: sys.exit(text) prints the text on standard error."""

@@ -9,7 +9,7 @@ import numpy as np
 
 import willmore_sphere
 from table import SCHEMA, TableError
-from testing import data_lines, lines_of, run_script, slopes_of, texts_of
+from testing import data_lines, figure_named, lines_of, run_script, slopes_of, texts_of
 from willmore import SPHERE, TORUS, limit_of
 
 
@@ -91,7 +91,7 @@ class WillmoreSphere(unittest.TestCase):
         table["rows"][2]["values"]["willmore_energy"] = 1e6
         table["rows"][3]["values"] = {"willmore_energy": None}
         del table["rows"][4]["values"]
-        figure = dict(willmore_sphere.draw(table, "nodal_H1"))["kll21/fig7_1"]
+        figure = figure_named("kll21/fig7_1", willmore_sphere.draw(table, "nodal_H1"))
         self.assertIn("2 of 30 runs failed: convergence_none_h0_tau0, convergence_none_h0_tau1.", texts_of(figure))
         self.assertIn(r"Energies not shown: 2 missing, 1 farther than half of $8\pi$ from $8\pi$.", texts_of(figure))
         self.assertLess(figure.axes[3].get_ylim()[1], 12 * math.pi)

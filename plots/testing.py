@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the tests of several modules share: synthetic tables and surfaces, and what a figure shows."""
+import contextlib
 import functools
+import io
 import json
 import os
+import runpy
 import subprocess
 import sys
+import unittest.mock
 
 import meshio
 import numpy as np
@@ -38,15 +42,39 @@ def sphere_figures():
 
 
 def run_script(stem, table, folder, *options):
-    """Runs plots/STEM.py as a process of its own, with its own random hashes: `folder`/table.json -> `folder`/figures.
+    """Runs plots/STEM.py: `folder`/table.json -> `folder`/figures. In this process, which has matplotlib already.
 
-    `table`: a table, or the text of the file.
+    `table`: a table, or the text of the file. Returns returncode, stdout and stderr, as a process has them.
     """
+    script, *arguments = _command(stem, table, folder, options)
+    said, complained, code = io.StringIO(), io.StringIO(), 0
+    with unittest.mock.patch("sys.argv", [script, *arguments]), contextlib.redirect_stdout(said), \
+            contextlib.redirect_stderr(complained):
+        try:
+            runpy.run_path(script, run_name="__main__")
+        except SystemExit as end:  # the interpreter prints a text, and exits with 1
+            code = end.code if isinstance(end.code, int) else int(end.code is not None)
+            if isinstance(end.code, str):
+                print(end.code, file=sys.stderr)
+    return subprocess.CompletedProcess([script, *arguments], code, said.getvalue(), complained.getvalue())
+
+
+def run_process(stem, table, folder, *options):
+    """The same as a process of its own, with its own random hashes."""
+    command = [sys.executable, *_command(stem, table, folder, options)]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def _command(stem, table, folder, options):
     path = os.path.join(folder, "table.json")
     with open(path, "w", encoding="utf-8") as file:
         file.write(table if isinstance(table, str) else json.dumps(table))
-    command = [sys.executable, os.path.join(FOLDER, f"{stem}.py"), path, os.path.join(folder, "figures"), *options]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
+    return [os.path.join(FOLDER, f"{stem}.py"), path, os.path.join(folder, "figures"), *options]
+
+
+def figure_named(name, figures):
+    """Of what `draw` yields; figures that come after it are not drawn."""
+    return next(figure for found, figure in figures if found == name)
 
 
 def data_lines(axes):
