@@ -132,8 +132,9 @@ test: test-library test-plots test-vtu
 test-library:
 	@$(call run_tests,$(BUILD))
 test-plots:
-	@(cd plots && basename -s .py -a test_*.py | xargs -n3 -P$(local_jobs) $(PYTHON) -m unittest -q)
-	$(PYTHON) -m unittest discover -q -s tests/packages
+	@$(PYTHON) -m unittest discover -q -s tests/packages & packages=$$!
+	(cd plots && basename -s .py -a test_*.py | xargs -n5 -P$(local_jobs) $(PYTHON) -m unittest -q)
+	wait $$packages
 # VTK and ParaView read the snapshots where they are installed; so what this reads is in no list of packages.
 test-vtu:
 	@$(PYTHON) tests/mesh/test_vtu_files.py -q
@@ -188,11 +189,11 @@ verdicts:
 	@$(if $(stems),$(BIN)/check_orders $(stems:%=results/check/%.json),echo "no experiments")
 
 # Do packages.txt and packages-tests.txt bring all that is read? And is each of their packages needed?
-# Taken away, libgmock-dev must be missed: it once was, and nobody saw it.
+# Taken away, libgmock-dev must be missed: it once was, and nobody saw it. WITHOUT=each takes away one after the other.
 packages-check:
-	@$(PYTHON) tests/packages/check_packages.py --build $(BUILD) --without libgmock-dev
+	@$(PYTHON) tests/packages/check_packages.py --build $(BUILD) --without $(or $(WITHOUT),libgmock-dev)
 packages-check-each:
-	@$(PYTHON) tests/packages/check_packages.py --build $(BUILD) --without each
+	@$(MAKE) packages-check WITHOUT=each
 
 # The errors of an independent implementation, on its meshes and with its quadrature rule.
 independent_meshes := $(foreach n,642 1442 2562,--mesh reference/independent/sphere_radius2_$(n).msh)

@@ -31,6 +31,7 @@ Rules:
 import argparse
 import collections
 import concurrent.futures
+import functools
 import json
 import os
 import re
@@ -284,6 +285,22 @@ class Apt:
             raise Failed(f"apt-get cannot install the list on an empty system: {done.stderr.strip()}")
         return {line.split()[1].split("_")[0] for line in done.stdout.splitlines()}
 
+    def reachable(self, packages):
+        """No closure of `packages` has more: all that dependencies lead to, by whichever alternative and provider.
+
+        In a tenth of the time.
+        """
+        unwanted = ("recommends", "suggests", "conflicts", "breaks", "replaces", "enhances")
+        done = run(["apt-cache", *self.options, "depends", "--recurse", *(f"--no-{kind}" for kind in unwanted), *packages])
+        if done.returncode:
+            raise Failed(f"apt-cache does not know the dependencies of the list: {done.stderr.strip()}")
+        return self.minimal() | {word for line in done.stdout.splitlines() for word in line.split()}
+
+    @functools.cache
+    def minimal(self):
+        """The packages of a minimal Debian."""
+        return self.closure([])
+
 
 # ---- The verdict
 
@@ -323,6 +340,9 @@ def without(package, found, lists, apt):
     """What happens when one package is taken from its list: ('implied' | 'missed' | 'superfluous', sentence)."""
     which = next(name for name in LISTS if package in lists[name])
     rest = [name for name in (lists[RUNS] if which == RUNS else lists[RUNS] + lists[TESTS]) if name != package]
+    seen = found.get((package, which))
+    if seen and package not in apt.reachable(rest):
+        return "missed", f"without {package}: {complaint(package, seen)}"
     closure = apt.closure(rest)
     if package in closure:
         return "implied", f"{package}: other packages of the lists bring it"
