@@ -43,22 +43,16 @@ double largest_change(const Errors& some, const Errors& others) {
   return largest;
 }
 
-TEST(DefaultQuadrature, IsNotWorseThanTheNextBetterRule) {
+TEST(DefaultQuadrature, IsNotWorseThanTheNextBetterRuleButAWeakerOneIsSeen) {
   for (int degree : {1, 2, 3, 4}) {
     const Quadrature rule = default_quadrature(degree), better = symmetric_quadrature(rule.degree + 2);
     EXPECT_GT(better.weights.size(), rule.weights.size());
-    EXPECT_LT(largest_change(sphere_errors(degree, rule), sphere_errors(degree, better)), 1e-3)
-        << "P" << degree;
-  }
-}
-
-TEST(DefaultQuadrature, AWeakerRuleIsSeen) {
-  for (int degree : {2, 3, 4}) {
-    const Quadrature weaker = symmetric_quadrature(2 * degree - 2);
-    EXPECT_GT(
-        largest_change(sphere_errors(degree, weaker), sphere_errors(degree, default_quadrature(degree))),
-        1e-3)
-        << "P" << degree;
+    const Errors errors = sphere_errors(degree, rule);
+    EXPECT_LT(largest_change(errors, sphere_errors(degree, better)), 1e-3) << "P" << degree;
+    if (degree > 1) {
+      const Quadrature weaker = symmetric_quadrature(2 * degree - 2);
+      EXPECT_GT(largest_change(sphere_errors(degree, weaker), errors), 1e-3) << "P" << degree;
+    }
   }
 }
 
