@@ -34,7 +34,7 @@ stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*
 programs := evolve check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
-.PHONY: help figures check bench deps configure build test test-library test-plots test-vtu sanitize fuzz crash crash-check \
+.PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu sanitize fuzz crash crash-check \
         format format-check samples tables-check verdicts independent plots-check report report-check packages-check packages-check-each gallery \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
@@ -50,7 +50,8 @@ help:
 	@echo "make sanitize      tests of what flows are made of under AddressSanitizer and UBSan, in build-asan/"
 	@echo "make crash         kills runs at KILLS=200 random moments, fills disks, damages checkpoints; then compares the numbers"
 	@echo "make fuzz          mutated files for each reader, SECONDS=60 of each, in build-fuzz/ (needs clang)"
-	@echo "make bench         ms per step and phase at growing sizes"
+	@echo "make bench         ms per step and phase at growing sizes, factorisations beside CHOLMOD's and MUMPS's"
+	@echo "make bench-peers   a step beside the same in DOLFINx and PETSc, where they are installed"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
 	@echo "make gallery       small pictures in docs/ and the headline table of README.md, from the same"
 	@echo "make clean         remove build/ and results/check/; published results and figures are kept, and used again"
@@ -73,7 +74,7 @@ $(stems:%=prepare-%): prepare-%:
 $(programs):
 	@$(call prepare,build,build,$@)
 deps configure build:
-	@$(call prepare,$@,build figures report tests bench format)
+	@$(call prepare,$@,build figures report tests peers bench format)
 
 figures: prepare-figures
 	+@start=$$SECONDS
@@ -142,7 +143,7 @@ test-vtu:
 # Sanitizers watch the tests of the parts that everything else is made of; flows and the finest meshes take too long.
 sanitize:
 	@export BUILD=build-asan PRESET=asan
-	$(call prepare,build,build tests,sanitized)
+	$(call prepare,build,build tests peers,sanitized)
 	$(call run_tests,$$BUILD,-L '^(fe|mesh|assembly|linalg|time|analysis)$$' \
 	  -E 'GeneratedMesh.KeepsItsPromises.*_50 |IsTheSameToTheBitAfterOtherCalls')
 
@@ -158,7 +159,7 @@ SECONDS ?= 60
 fuzz:
 	@if ! command -v clang++ >/dev/null; then echo "no clang++: install clang and libclang-rt-14-dev" >&2; exit 1; fi
 	export BUILD=build-fuzz PRESET=fuzz CXX=clang++
-	$(call prepare,build,build tests,fuzzers)
+	$(call prepare,build,build tests peers,fuzzers)
 	basename -a tests/fuzz/corpus/* | xargs -P$(local_jobs) -I{} sh -c 'mkdir -p build-fuzz/corpus/{} && \
 	  build-fuzz/bin/fuzz_{} -max_total_time=$(SECONDS) -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
 	    -artifact_prefix=build-fuzz/{}- build-fuzz/corpus/{} tests/fuzz/corpus/{} >build-fuzz/{}.log 2>&1 || \
@@ -207,10 +208,15 @@ independent:
 	$(BIN)/compare_tables results/check/independent/coupled_diffusion.json reference/independent/table_coupled_diffusion.json
 
 bench:
-	@$(call prepare,build,build bench,bench_step)
+	@$(call prepare,build,build bench peers,bench_step)
 	@# One thread for everybody, and for OpenBLAS, which knows no CPU newer than itself, its best kernels.
 	core=$$(grep -qw avx512vl /proc/cpuinfo && echo SkylakeX || { grep -qw avx2 /proc/cpuinfo && echo Haswell; } || true)
 	OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 OPENBLAS_CORETYPE=$$core $(BIN)/bench_step
+
+bench-peers:
+	@$(call prepare,build,build bench peers,bench_step)
+	$(BIN)/bench_step --write-step $(BUILD)/step.json
+	$(PYTHON) bench/peer_dolfinx.py $(BUILD)/step.json
 
 clean:
 	rm -rf $(BUILD) results/check

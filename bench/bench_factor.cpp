@@ -12,6 +12,7 @@
 #include <string>
 
 #include "bench/benchmarks.hpp"
+#include "bench/mean_curvature_step.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/linalg/block_solver.hpp"
 #include "solver/linalg/spd_solver.hpp"
@@ -153,11 +154,7 @@ void register_factor_benchmarks() {
     const int rounds = subdivisions < 5 ? 30 : 7;
     const std::string nodes = std::to_string(10 * (4 << 2 * subdivisions) + 2);
     add("sphere/P1/" + nodes, rounds, [=] { return icosphere(2, subdivisions + 1); });
-    add("sphere/P2/" + nodes, rounds, [=] {
-      Mesh mesh = lagrange_mesh(icosphere(2, subdivisions), 2);
-      mesh.nodes = 2 * mesh.nodes.rowwise().normalized();
-      return mesh;
-    });
+    add("sphere/P2/" + nodes, rounds, [=] { return quadratic_icosphere(2, subdivisions); });
   }
   for (const double edge_length : {0.3, 0.15, 0.075, 0.0375})
     add("torus/P2/" + std::to_string(edge_length), edge_length > 0.1 ? 30 : 7,

@@ -7,7 +7,11 @@
 // factorisation already. At last a step of Cahn-Hilliard (bk22 §9.2) on P1 with 10,242 nodes, motion and
 // loads included, as a ratio to a naive one.
 //
+// bench_factor.cpp then compares factorisations with those of other libraries, and peer_step.cpp writes a
+// step for `make bench-peers`.
+//
 //   bench_step                                   all sizes; the naive step up to N = 41k
+//   bench_step --write-step FILE.json            nothing but the step for `make bench-peers`
 //   bench_step --benchmark_filter=nodes:163842   peak memory of one size alone (column peak_MiB)
 #include <benchmark/benchmark.h>
 
@@ -21,6 +25,7 @@
 #include <vector>
 
 #include "bench/benchmarks.hpp"
+#include "bench/mean_curvature_step.hpp"
 #include "bench/naive_step.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/constants.hpp"
@@ -77,29 +82,9 @@ class Phases {
   std::map<std::string, std::vector<double>> samples_;
 };
 
-/// g and f of kll19 §3.3 in one pass: columns 0-2 are g = -∫ H_h nu_h phi - ∫ grad(H_h nu_h) . grad phi,
-/// columns 3-6 are f = ∫ |grad nu_h|² (nu_h, H_h) phi; u = (nu_h, H_h).
-void mean_curvature_load(const PointData<4>& at, Integrand<7, 3>& out) {
-  Pack grad_nu_squared = {};
-  for (int l = 0; l < 3; ++l) {
-    grad_nu_squared += dot(at.grad[l], at.grad[l]);
-    out.value[l] = -at.u[3] * at.u[l];
-    for (int i = 0; i < 3; ++i) out.flux[l][i] = -(at.u[3] * at.grad[l][i] + at.u[l] * at.grad[3][i]);
-  }
-  for (int l = 0; l < 4; ++l) out.value[3 + l] = grad_nu_squared * at.u[l];
-}
-
-Field normal_and_curvature(const Mesh& mesh) {
-  Field u(mesh.nodes.rows(), 4);
-  u.leftCols(3) = mesh.nodes / R;
-  u.col(3).setConstant(2 / R);
-  return u;
-}
-
 void step(benchmark::State& state, int subdivisions) {
-  Mesh mesh = lagrange_mesh(icosphere(R, subdivisions), 2);
-  mesh.nodes = R * mesh.nodes.rowwise().normalized();
-  const Field u = normal_and_curvature(mesh);
+  const Mesh mesh = quadratic_icosphere(R, subdivisions);
+  const Field u = normal_and_curvature(mesh, R);
   const double analysis_start = cpu_ms();
   const SurfaceSpace space(mesh);
   SpdSolver spd(space.pattern());
@@ -305,6 +290,10 @@ void cahn_hilliard_step(benchmark::State& state) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc == 3 && std::string(argv[1]) == "--write-step") {
+    esfem::write_peer_step(argv[2]);
+    return 0;
+  }
   std::vector<char*> arguments(argv, argv + argc);
   std::string tabular = "--benchmark_counters_tabular=true";
   arguments.insert(arguments.begin() + 1, tabular.data());

@@ -9,29 +9,44 @@
 
 namespace esfem {
 
-/// pack_size complex numbers.
-struct ComplexPack {
-  Pack re, im;
+/// As many complex numbers as Vector has real ones.
+template <class Vector>
+struct ComplexVector {
+  Vector re, im;
 };
+using ComplexPack = ComplexVector<Pack>;
 
-inline void subtract_product(Pack& sum, const Pack& a, double b) {
+/// Those of a row of right-hand sides.
+using FourDoubles = double __attribute__((vector_size(4 * sizeof(double))));
+
+// sum -= a b, where b is one number or as many as a.
+template <class Vector>
+void subtract_product(Vector& sum, const Vector& a, double b) {
   sum -= a * b;
 }
-inline void subtract_product(ComplexPack& sum, const ComplexPack& a, const std::complex<double>& b) {
-  sum.re -= a.re * b.real();
-  sum.im -= a.re * b.imag();
-  sum.re += a.im * b.imag();
-  sum.im -= a.im * b.real();
-}
-inline void subtract_product(Pack& sum, const Pack& a, const Pack& b) {
+template <class Vector>
+void subtract_product(Vector& sum, const Vector& a, const Vector& b) {
   sum -= a * b;
 }
-inline void subtract_product(ComplexPack& sum, const ComplexPack& a, const ComplexPack& b) {
-  sum.re -= a.re * b.re;
-  sum.im -= a.re * b.im;
-  sum.re += a.im * b.im;
-  sum.im -= a.im * b.re;
+template <class Vector, class Number>
+void subtract_complex_product(ComplexVector<Vector>& sum, const ComplexVector<Vector>& a, const Number& re,
+                              const Number& im) {
+  sum.re -= a.re * re;
+  sum.im -= a.re * im;
+  sum.re += a.im * im;
+  sum.im -= a.im * re;
 }
+template <class Vector>
+void subtract_product(ComplexVector<Vector>& sum, const ComplexVector<Vector>& a,
+                      const std::complex<double>& b) {
+  subtract_complex_product(sum, a, b.real(), b.imag());
+}
+template <class Vector>
+void subtract_product(ComplexVector<Vector>& sum, const ComplexVector<Vector>& a,
+                      const ComplexVector<Vector>& b) {
+  subtract_complex_product(sum, a, b.re, b.im);
+}
+
 inline Pack sum_of(const Pack& a, const Pack& b) {
   return a + b;
 }
@@ -44,32 +59,19 @@ inline Pack product(const Pack& a, double b) {
 inline ComplexPack product(const ComplexPack& a, const std::complex<double>& b) {
   return {a.re * b.real() - a.im * b.imag(), a.re * b.imag() + a.im * b.real()};
 }
-/// Four real numbers, or four complex ones: those of a row of right-hand sides.
-using FourDoubles = double __attribute__((vector_size(4 * sizeof(double))));
-struct FourComplex {
-  FourDoubles re, im;
-};
-inline void subtract_product(FourDoubles& sum, const FourDoubles& a, double b) {
-  sum -= a * b;
+
+inline double lane(const FourDoubles& numbers, int i) {
+  return numbers[i];
 }
-inline void subtract_product(FourComplex& sum, const FourComplex& a, const std::complex<double>& b) {
-  sum.re -= a.re * b.real();
-  sum.im -= a.re * b.imag();
-  sum.re += a.im * b.imag();
-  sum.im -= a.im * b.real();
+inline std::complex<double> lane(const ComplexVector<FourDoubles>& numbers, int i) {
+  return {numbers.re[i], numbers.im[i]};
 }
-inline double lane(const FourDoubles& row, int i) {
-  return row[i];
+inline void set_lane(FourDoubles& numbers, int i, double value) {
+  numbers[i] = value;
 }
-inline std::complex<double> lane(const FourComplex& row, int i) {
-  return {row.re[i], row.im[i]};
-}
-inline void set_lane(FourDoubles& row, int i, double value) {
-  row[i] = value;
-}
-inline void set_lane(FourComplex& row, int i, const std::complex<double>& value) {
-  row.re[i] = value.real();
-  row.im[i] = value.imag();
+inline void set_lane(ComplexVector<FourDoubles>& numbers, int i, const std::complex<double>& value) {
+  numbers.re[i] = value.real();
+  numbers.im[i] = value.imag();
 }
 
 /// Without the case distinctions of infinite numbers that C++'s operator makes.
@@ -124,7 +126,7 @@ struct PackedMatrix<double> {
 template <>
 struct PackedMatrix<std::complex<double>> {
   using Packed = ComplexPack;
-  using FourNumbers = FourComplex;
+  using FourNumbers = ComplexVector<FourDoubles>;
   static constexpr int planes = 2;
   double* data;
   int stride, first_row;

@@ -92,7 +92,13 @@ void SymmetricFactor<T, b>::place_fronts() {
       place.stride = padded(m);
       place.first_updated = n / pack_size * pack_size;
       place.panel = panels_size_;
-      panels_size_ += planes * place.stride * n;
+      const std::ptrdiff_t size = planes * place.stride * n;
+      if (size > std::numeric_limits<int>::max())
+        throw NumericsError(
+            format("factorisation of %d unknowns: %d of them depend on each other all at once, which is too "
+                   "many",
+                   unknowns(), m));
+      panels_size_ += size;
       place.update = top[parity];
       top[parity] += planes * (place.stride - place.first_updated) * (m - n);
       height[parity] = std::max(height[parity], top[parity]);
@@ -145,8 +151,8 @@ FrontMatrix<T> SymmetricFactor<T, b>::front_matrix(int f) {
           {stack_.data() + place.update, place.stride - place.first_updated, place.first_updated}};
 }
 
-/// Calls work(front, workspace) for all fronts, children first or parents first. An exception in one part
-/// ends this part; that of the first part is thrown.
+/// Calls work(front, workspace) for all fronts, children first or parents first; the parts in threads. An
+/// exception ends its part; that of the first part is thrown.
 template <class T, int b>
 template <class Work>
 void SymmetricFactor<T, b>::for_each_front(Direction direction, const Work& work) {
@@ -157,31 +163,21 @@ void SymmetricFactor<T, b>::for_each_front(Direction direction, const Work& work
       for (auto f = part.rbegin(); f != part.rend(); ++f) work(*f, workspace);
     }
   };
-  if (direction == downwards) walk(split_.top, workspaces_[0]);
-  const std::size_t parts = split_.parts.size();
-  std::vector<std::exception_ptr> errors(parts > 1 ? parts : 0);
-  std::vector<std::thread> threads;
-  for (std::size_t p = 1; p < parts; ++p) {
-    threads.emplace_back([&, p] {
-      try {
-        walk(split_.parts[p], workspaces_[p]);
-      } catch (...) {
-        errors[p] = std::current_exception();
-      }
-    });
-  }
-  if (parts == 1) {
-    walk(split_.parts[0], workspaces_[0]);
-  } else {
+  const auto walk_part = [&](std::size_t p) {
+    workspaces_[p].error = nullptr;
     try {
-      walk(split_.parts[0], workspaces_[0]);
+      walk(split_.parts[p], workspaces_[p]);
     } catch (...) {
-      errors[0] = std::current_exception();
+      workspaces_[p].error = std::current_exception();
     }
-  }
+  };
+  if (direction == downwards) walk(split_.top, workspaces_[0]);
+  std::vector<std::thread> threads;
+  for (std::size_t p = 1; p < split_.parts.size(); ++p) threads.emplace_back(walk_part, p);
+  walk_part(0);
   for (std::thread& thread : threads) thread.join();
-  for (const std::exception_ptr& error : errors)
-    if (error) std::rethrow_exception(error);
+  for (const Workspace& workspace : workspaces_)
+    if (workspace.error) std::rethrow_exception(workspace.error);
   if (direction == upwards) walk(split_.top, workspaces_[0]);
 }
 

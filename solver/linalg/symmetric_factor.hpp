@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <complex>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <type_traits>
@@ -105,6 +106,7 @@ class SymmetricFactor {
   struct Workspace {
     Eigen::VectorXd scaled;  ///< ScaledRows
     Eigen::VectorXd right;   ///< right-hand sides in a front
+    std::exception_ptr error;
   };
 
   template <class Entry>
