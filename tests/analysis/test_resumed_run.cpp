@@ -139,17 +139,22 @@ TYPED_TEST(ResumedRun, EqualsTheOneThatWasNotStopped) {
 
 using ForgetfulRun = ResumedRun<ForgetfulWillmoreFlow>;
 
+// Not wherever it is stopped: not where the next step would have been factorised anyway.
 TEST_F(ForgetfulRun, DiffersFromTheOneThatWasNotStopped) {
   for (const bool adaptive : {false, true}) {
     fs::remove(file);
     const auto whole = run(never, adaptive);
-    fs::remove(file);
-    run(whole.observed - 8, adaptive);
-    const auto resumed = run(never, adaptive);
-    EXPECT_EQ(resumed.observed, 8);
-    const Field &found = resumed.last.w, &expected = whole.last.w;
-    EXPECT_NE(found, expected) << "adaptive: " << adaptive;
-    EXPECT_LT((found - expected).norm(), 1e-11 * expected.norm());
+    bool differs = false;
+    for (int left = 8; left > 4; --left) {
+      fs::remove(file);
+      run(whole.observed - left, adaptive);
+      const auto resumed = run(never, adaptive);
+      EXPECT_EQ(resumed.observed, left);
+      const Field &found = resumed.last.w, &expected = whole.last.w;
+      differs = differs || found != expected;
+      EXPECT_LT((found - expected).norm(), 1e-11 * expected.norm());
+    }
+    EXPECT_TRUE(differs) << "adaptive: " << adaptive;
   }
 }
 

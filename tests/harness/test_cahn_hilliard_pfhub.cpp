@@ -35,7 +35,7 @@ Table table_of(const std::string& arguments, const fs::path& folder) {
 
 const fs::path root = fs::path(ESFEM_BINARY_DIR) / "test_pfhub" / std::to_string(getpid());
 
-// The order that MUMPS itself chooses for a system of this size differs from process to process.
+// An order of elimination that differs from process to process would show.
 TEST(CahnHilliardPfhub, IsRepeatedToTheBit) {
   const Table table = table_of("--levels 1 --end 1", root / "first");
   EXPECT_EQ(table.rows.at(0).series, table_of("--levels 1 --end 1", root / "second").rows.at(0).series);
