@@ -72,7 +72,7 @@ struct ResumedRun : testing::Test {
   Mesh mesh = lagrange_mesh(icosphere(1, 1), 2);
 
   ResumedRun() {
-    project_nodes(mesh, ellipsoid(1, 1, 0.8));
+    project_nodes(mesh, ellipsoid(1, 1, 0.95));
     fs::create_directories(folder);
   }
   ~ResumedRun() override { fs::remove_all(folder); }
@@ -91,7 +91,7 @@ struct ResumedRun : testing::Test {
       ++outcome.observed;
     };
     const State initial =
-        start_of(space, ellipsoid(1, 1, 0.8), mesh.nodes, static_cast<const Flow*>(nullptr));
+        start_of(space, ellipsoid(1, 1, 0.95), mesh.nodes, static_cast<const Flow*>(nullptr));
     try {
       if (adaptive)
         integrate_adaptive(flow, {2, 0.1, 1e-3, 1e-4, 0.003}, initial, &State::x, observe, &checkpoint);
