@@ -319,7 +319,7 @@ int evolve(const std::string& file, const json& origin) {
   const EvolveConfig config = evolve_config(config_json, file);
   prepare_outputs(config, config_json, file);
   for (const std::string& remark : config.mesh_remarks) warn(remark);
-  warn(thin_elements_remark(config.mesh, config_json.at("mesh").value("file", "")));
+  warn(thin_elements_remark(config.mesh, config.mesh_origin));
   const SurfaceSpace space(config.mesh, config.rule);
   const bool fourth_order = config.flow == "willmore" || config.flow == "surface_diffusion";
   SnapshotPlan plan = config.snapshots;

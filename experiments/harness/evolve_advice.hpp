@@ -8,8 +8,8 @@
 namespace esfem {
 
 /// What to tell about the mesh of a file when it has elements thinner than flows let elements become; "" for
-/// others. Such meshes run: what is thin at the start is no singularity.
-std::string thin_elements_remark(const Mesh& mesh, const std::string& file);
+/// others, and for a mesh without a source. Such meshes run: what is thin at the start is no singularity.
+std::string thin_elements_remark(const Mesh& mesh, const MeshOrigin& origin);
 
 /// evolve looks this often, and at the start and the end, whether nu and H of a flow
 /// are still the surface's: a look costs about as much as a step.

@@ -336,6 +336,7 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   config.mesh_remarks = std::move(initial.remarks);
   config.fields = std::move(initial.start.fields);
   config.node_numbers = std::move(initial.start.node_numbers);
+  config.mesh_origin = std::move(initial.start.origin);
   const int k = config.mesh.degree;
   config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
                 : config.flow == "bgn" && k == 1 ? vertex_quadrature()

@@ -13,6 +13,7 @@
 #include "solver/flows/tumour_growth.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/mesh/origin.hpp"
 #include "solver/time/adaptive.hpp"
 
 namespace esfem {
@@ -28,6 +29,7 @@ struct EvolveConfig {
   std::vector<std::string> mesh_remarks;   ///< what was changed or chosen when the mesh was made
   std::vector<PointField> fields;          ///< nodal values of the mesh file; nan where it has none
   std::vector<long> node_numbers;          ///< the file's own, of the first nodes; empty: 1, 2, ..
+  MeshOrigin mesh_origin;                  ///< names elements as the mesh file does; no source: generated
   TimeGrid grid;
   bool start_given = false;              ///< whether grid.start comes from the file
   std::optional<AdaptiveGrid> adaptive;  ///< instead of `grid`, where the file asks for it

@@ -77,7 +77,9 @@ void remesh_file(ReadMesh& start, const std::string& file, const FileTreatment& 
     for (int i = 0; i < found.mesh.nodes.rows(); ++i)
       found.mesh.nodes.row(i) = surface.point(found.on_input[i].element, found.on_input[i].weights);
   }
-  check_closed_surface(found.mesh, file + ", remeshed");
+  start.origin = {};
+  start.origin.source = file + ", remeshed";
+  check_closed_surface(found.mesh, start.origin.source);
   for (PointField& field : start.fields) field.values = values_at(found.on_input, flat, field.values);
   start.node_numbers.clear();
   const MeshQuality before = mesh_quality(flat.elements, flat.nodes),

@@ -77,7 +77,9 @@ ReadMesh read_mesh(const std::string& file) {
   const Parser parse = parser_of(file);
   MeshFile read = parse(file, content_of(file));
   const std::string remark = repair_and_check(read);
-  return {std::move(read.mesh), remark, std::move(read.fields), numbers_of(read.origin)};
+  std::vector<long> node_numbers = numbers_of(read.origin);
+  return {std::move(read.mesh), remark, std::move(read.fields), std::move(node_numbers),
+          std::move(read.origin)};
 }
 
 std::string check_closed_surface(Mesh& mesh, const std::string& source) {

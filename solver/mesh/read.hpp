@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/mesh/mesh.hpp"
+#include "solver/mesh/origin.hpp"
 #include "solver/mesh/write_vtu.hpp"
 
 namespace esfem {
@@ -14,6 +15,7 @@ struct ReadMesh {
   std::string remark;              ///< empty, or what was changed ("orientation was inward: turned")
   std::vector<PointField> fields;  ///< nodal values that the file has; nan where it has none
   std::vector<long> node_numbers;  ///< the file's own (tags, or counted from 1); empty when they are 1, 2, ..
+  MeshOrigin origin;               ///< names its elements
 };
 
 /// Reads a closed triangulated surface of one or several components: Gmsh MSH 2.2 and 4.1, ASCII

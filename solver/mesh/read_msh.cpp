@@ -197,12 +197,14 @@ void read_node_data(Msh& msh, MshRecords& records) {
 /// Reads the head of the file; returns the major version, 2 or 4.
 int read_format(MshRecords& records) {
   Lines& lines = records.lines;
-  if (!lines.next() || lines.word(0) != "$MeshFormat") lines.fail("no Gmsh file, $MeshFormat expected");
+  const std::string save = " (save it with Mesh.MshFileVersion = 4.1)";
+  const bool has_head = lines.next();
+  if (has_head && lines.word(0) == "$NOD") lines.fail("MSH version 1, 2.2 or 4.1 expected" + save);
+  if (!has_head || lines.word(0) != "$MeshFormat") lines.fail("no Gmsh file, $MeshFormat expected");
   lines.expect("the format's version");
   const std::string version = lines.word(0);
   const bool is_2 = version == "2" || version == "2.0" || version == "2.1" || version == "2.2";
-  if (!is_2 && version != "4.1")
-    lines.fail("MSH version " + version + ", 2.2 or 4.1 expected (save it with Mesh.MshFileVersion = 4.1)");
+  if (!is_2 && version != "4.1") lines.fail("MSH version " + version + ", 2.2 or 4.1 expected" + save);
   const long is_binary = lines.integer(1, "file type"), data_size = lines.integer(2, "data size");
   if (is_binary != 0 && is_binary != 1) lines.fail(format("file type %ld, 0 or 1 expected", is_binary));
   if (is_binary == 1) {
@@ -238,6 +240,8 @@ MeshFile parse_msh(const std::string& file, const std::string& text) {
     if (head[0] != '$')
       lines.fail((records.is_binary() ? "something else" : "'" + head + "'") +
                  " found, the head of a section ($...) expected");
+    if (section == "ParametricNodes")
+      lines.fail("nodes with parameters, $Nodes expected (save it with Mesh.SaveParametric = 0)");
     if (section == "Nodes") {
       is_2 ? read_nodes_2(msh, records) : read_nodes_4(msh, records);
       has_nodes = true;

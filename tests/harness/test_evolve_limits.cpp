@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <fstream>
 #include <map>
 #include <vector>
 
+#include "experiments/harness/evolve_advice.hpp"
 #include "solver/constants.hpp"
 #include "solver/mesh/read.hpp"
 #include "tests/harness/evolve_program.hpp"
@@ -112,20 +114,60 @@ TEST_F(EvolveLimits, EveryFlowRunsFromACube) {
   }
 }
 
-TEST_F(EvolveLimits, AThinElementOfTheFileIsNamedAndRuns) {
+/// MSH 2.2, where element e has the number 1000 + e.
+void write_numbered(const Mesh& mesh, const std::string& file) {
+  std::ofstream stream(file);
+  stream.precision(17);
+  stream << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n" << mesh.nodes.rows() << "\n";
+  for (int i = 0; i < mesh.nodes.rows(); ++i) stream << i + 1 << " " << mesh.nodes.row(i) << "\n";
+  stream << "$EndNodes\n$Elements\n" << mesh.elements.rows() << "\n";
+  for (int e = 0; e < mesh.elements.rows(); ++e)
+    stream << 1000 + e << " 2 0 " << mesh.elements.row(e).array() + 1 << "\n";
+  stream << "$EndElements\n";
+}
+
+TEST_F(EvolveLimits, AThinElementOfTheFileIsNamedAsThereAndRuns) {
   Mesh mesh = icosphere(1, 1);
   const int from = mesh.elements(17, 0), onto = mesh.elements(17, 1);
   mesh.nodes.row(from) = 0.998 * mesh.nodes.row(onto) + 0.002 * mesh.nodes.row(from);
-  write_msh(mesh, mesh_file);
+  write_numbered(mesh, mesh_file);
   const MeshQuality quality = mesh_quality(mesh.elements, mesh.nodes);
   ASSERT_LT(quality.min_radius_ratio, 0.01);
   for (const char* flow : {"mean_curvature", "dziuk"}) {
     EXPECT_EQ(run(config({{"flow", flow}, {"tau", 1e-4}, {"steps", 2}})), exit_done) << message;
-    EXPECT_THAT(message,
-                HasSubstr(format("mesh.msh: element %d (counted from 1): radius ratio %.2g, at least 0.01",
-                                 quality.worst_element + 1, quality.min_radius_ratio)));
+    const int line = 9 + static_cast<int>(mesh.nodes.rows()) + quality.worst_element;
+    EXPECT_THAT(message, HasSubstr(format("mesh.msh: element %d (line %d): radius ratio %.2g, at least 0.01",
+                                          1000 + quality.worst_element, line, quality.min_radius_ratio)));
     EXPECT_THAT(message, HasSubstr("remesh"));
   }
+}
+
+TEST_F(EvolveLimits, ARefusalNamesTheFlowThatRuns) {
+  Mesh mesh = icosphere(1, 2);
+  mesh.nodes.row(0) *= 2;
+  write_msh(mesh, mesh_file);
+  const auto run_flow = [&](const char* flow) {
+    return run(config({{"flow", flow}, {"bdf", 1}, {"tau", 1e-4}, {"steps", 5}}));
+  };
+  EXPECT_EQ(run_flow("bgn"), exit_numerics);
+  EXPECT_THAT(message, HasSubstr("; try \"flow\": \"dziuk\"; on some meshes"));
+  EXPECT_EQ(run_flow("dziuk"), exit_done) << message;
+}
+
+TEST_F(EvolveLimits, ACureIsNamedForEveryFlow) {
+  EvolveConfig config;
+  const auto expect = [&config](int degree, const char* flow, const char* expected) {
+    config.mesh.degree = degree;
+    config.flow = flow;
+    EXPECT_THAT(cure(config), StartsWith(expected));
+  };
+  expect(1, "mean_curvature", "try \"flow\": \"dziuk\" or \"bgn\"; on some meshes even elements (");
+  expect(2, "mean_curvature", "try \"flow\": \"dziuk\" or \"bgn\" with \"degree\": 1; on some meshes even");
+  EXPECT_THAT(cure(config), Not(HasSubstr("normalise"))) << "which helps flat elements only";
+  expect(2, "bgn", "try \"flow\": \"dziuk\" with \"degree\": 1; on some meshes even elements (");
+  expect(1, "dziuk", "try \"flow\": \"bgn\"; on some meshes even elements (");
+  expect(2, "willmore", "try smaller steps, \"variant\": {\"relaxation\"");
+  expect(1, "cahn_hilliard", "try smaller steps, or even elements");
 }
 
 TEST_F(EvolveLimits, ASphereThatShrinksToNothingIsExtinct) {

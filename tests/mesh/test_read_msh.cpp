@@ -108,6 +108,10 @@ TEST(ParseMsh, Format) {
               StartsWith("a.msh: line 1: no Gmsh file, $MeshFormat expected"));
   EXPECT_THAT(complaint(tetrahedron_2, 2, "4 0 8"),
               AllOf(StartsWith("a.msh: line 2: "), HasSubstr("2.2 or 4.1 expected")));
+  EXPECT_THAT(complaint(tetrahedron_2, 1, "$NOD"),
+              AllOf(StartsWith("a.msh: line 1: MSH version 1, "), HasSubstr("MshFileVersion = 4.1")));
+  EXPECT_THAT(complaint(tetrahedron_2, 4, "$ParametricNodes"),
+              AllOf(StartsWith("a.msh: line 4: "), HasSubstr("SaveParametric = 0")));
   EXPECT_THAT(complaint(tetrahedron_4, 2, "4.1 1 8"), HasSubstr("byte 25: "));
   EXPECT_THAT(complaint(tetrahedron_4, 2, "4.1 1 4"), StartsWith("a.msh: line 2: data size 4, 8 expected"));
   EXPECT_THAT(complaint(tetrahedron_4, 2, "4.1 2 8"), StartsWith("a.msh: line 2: file type 2, 0 or 1"));
