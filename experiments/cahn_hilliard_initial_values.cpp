@@ -42,6 +42,8 @@ namespace {
 using namespace esfem;
 using State = CahnHilliardState;
 
+/// The paper's Ritz map has no length in it, though the radius is 5.
+const double ritz_length = 1;
 const double radius = 5, end_time = 5, largest_tau = 0.0125, default_epsilon = 0.5;
 const EvolvingEllipsoid moving_ellipsoid{0.5, 5, radius};
 const std::vector<double> snapshot_times = {1, 2, 3};  // beside the start and the end
@@ -183,13 +185,13 @@ InitialValues initial_values(const SurfaceSpace& space, const Field& x, const Ru
   const Concentration u_0{factor(run.constant)};
   Field u(x.rows(), 1);
   if (run.by_ritz_map()) {
-    u = ritz_map(space, x, sphere, on_sphere(u_0));
+    u = ritz_map(space, x, sphere, on_sphere(u_0), ritz_length);
   } else {
     for (int j = 0; j < x.rows(); ++j) u(j, 0) = u_0(x(j, 0), x(j, 1), x(j, 2));
   }
   if (!run.with_theta()) return {cahn_hilliard_start(space, DoubleWell(), epsilon, 0, x, u), {}};
   const Field g = load_of_g(space, DoubleWell(), 0, x, u);
-  const Field w = ritz_map(space, x, sphere, on_sphere(Potential{u_0, epsilon}));
+  const Field w = ritz_map(space, x, sphere, on_sphere(Potential{u_0, epsilon}), ritz_length);
   return {cahn_hilliard_state(space, 0, x, u, w), cahn_hilliard_theta(space, x, u, w, epsilon, g)};
 }
 

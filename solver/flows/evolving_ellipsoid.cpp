@@ -157,7 +157,8 @@ CahnHilliardState exact_cahn_hilliard_state(const SurfaceSpace& space, const Man
   const auto u = [&](const Vec3& y) { return ValueAndGradient{exact.u(y, t), exact.gradient_of_u(y, t)}; };
   const auto w = [&](const Vec3& y) { return ValueAndGradient{exact.w(y, t), exact.gradient_of_w(y, t)}; };
   const auto nodal = [&](const auto& function) -> Field {
-    if (values == StartValues::ritz) return ritz_map(space, x, exact.ellipsoid().surface(t), function);
+    if (values == StartValues::ritz)
+      return ritz_map(space, x, exact.ellipsoid().surface(t), function, space.length());
     Field result(x.rows(), 1);
     for (int j = 0; j < x.rows(); ++j) result(j, 0) = function(x.row(j)).value;
     return result;

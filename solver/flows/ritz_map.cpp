@@ -7,9 +7,9 @@
 namespace esfem {
 
 Field ritz_map(const SurfaceSpace& space, const Field& x, const Surface& surface,
-               const std::function<ValueAndGradient(const Vec3& y)>& u) {
+               const std::function<ValueAndGradient(const Vec3& y)>& u, double length) {
   const ShapeTable shapes = shape_functions(space.degree(), space.quadrature().points);
-  const double mass_factor = 1 / (space.length() * space.length());
+  const double mass_factor = 1 / (length * length);
   Field load = Field::Zero(space.dofs(), 1);
   visit_lifted_points(space, x, surface, [&](const LiftedPoint& point) {
     const ValueAndGradient exact = u(point.y);

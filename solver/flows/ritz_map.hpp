@@ -17,9 +17,9 @@ struct ValueAndGradient {
 /// The generalised Ritz map of bk22 (5.4): u_h with, for all phi_h in S_h[x],
 ///   int over Gamma_h of grad u_h . grad phi_h + u_h phi_h/L²
 ///     = int over Gamma of grad u . grad phi_h^l + u phi_h^l/L²,
-/// L the length of the space (the paper has L = 1), the right-hand side by the space's rule on the lifted
-/// elements. Returns nodal values, N x 1.
+/// L = length (the paper has L = 1), the right-hand side by the space's rule on the lifted elements. Returns
+/// nodal values, N x 1.
 Field ritz_map(const SurfaceSpace& space, const Field& x, const Surface& surface,
-               const std::function<ValueAndGradient(const Vec3& y)>& u);
+               const std::function<ValueAndGradient(const Vec3& y)>& u, double length);
 
 }  // namespace esfem
