@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "solver/assembly/pack.hpp"
 #include "solver/fe/quadrature.hpp"
+#include "solver/pack.hpp"
 #include "solver/types.hpp"
 
 namespace esfem {
@@ -27,6 +27,30 @@ struct BatchPoint {
   Pack tangent_xi[3], tangent_eta[3];
   Pack normal[3];  ///< t_xi x t_eta; its length is the Jacobian
   Pack jacobian, inverse_jacobian;
+
+  /// From the tangents.
+  void set_normal() {
+    cross(tangent_xi, tangent_eta, normal);
+    const Pack squared = dot(normal, normal);
+    inverse_jacobian = inverse_sqrt(squared);
+    jacobian = squared * inverse_jacobian;
+  }
+};
+
+/// Contravariant tangents: grad u = u_xi dual_xi + u_eta dual_eta, from the first fundamental form.
+struct DualTangents {
+  Pack xi[3], eta[3];
+
+  /// The inverse of the first fundamental form, applied to the tangents, is t_eta x n and n x t_xi over |n|².
+  explicit DualTangents(const BatchPoint& point) {
+    cross(point.tangent_eta, point.normal, xi);
+    cross(point.normal, point.tangent_xi, eta);
+    const Pack scale = point.inverse_jacobian * point.inverse_jacobian;
+    for (int i = 0; i < 3; ++i) {
+      xi[i] *= scale;
+      eta[i] *= scale;
+    }
+  }
 };
 
 /// The elements of a mesh in batches of pack_size, with the shape functions at the points of a quadrature
@@ -52,6 +76,13 @@ class ElementBatches {
   /// Collects the positions of a batch's nodes.
   void load(int number, const Field& x, Batch& batch) const;
 
+  /// out[a] = value of column c at local node a.
+  void gather(const Batch& batch, const Field& u, int c, Pack* out) const {
+    for (int a = 0; a < nodes_; ++a)
+      for (int lane = 0; lane < pack_size; ++lane)
+        out[a][lane] = u.data()[c * u.rows() + batch.node[pack_size * a + lane]];
+  }
+
   /// out[a][c] = value of component c < components at local node a.
   template <int width>
   void gather(const Batch& batch, const Field& u, int components, Pack (*out)[width]) const {
@@ -72,19 +103,14 @@ class ElementBatches {
         out.tangent_eta[i] += shape[a].deta * batch.x[a][i];
       }
     }
-    cross(out.tangent_xi, out.tangent_eta, out.normal);
-    const Pack squared = dot(out.normal, out.normal);
-    out.inverse_jacobian = inverse_sqrt(squared);
-    out.jacobian = squared * out.inverse_jacobian;
+    out.set_normal();
     const Pack upright = dot(out.normal, batch.direction);
     return (upright > smallest_jacobian * batch.size) & (upright < largest_jacobian * batch.size);
   }
 
   /// Throws NumericsError for the first lane that is false.
   void require_regular(const Lanes& regular, const Batch& batch) const {
-    bool all = true;
-    for (int lane = 0; lane < pack_size; ++lane) all &= regular[lane] != 0;
-    if (!all) report_degenerate(batch);
+    if (!all(regular)) report_degenerate(batch);
   }
 
  private:

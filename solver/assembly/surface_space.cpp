@@ -176,9 +176,7 @@ double SurfaceSpace::integrate(const Field& x, const Function& function) const {
     }
     batches_.require_regular(regular, batch);
   }
-  double total = 0;
-  for (int lane = 0; lane < pack_size; ++lane) total += sum[lane];
-  return total;
+  return sum_of_lanes(sum);
 }
 
 double SurfaceSpace::area(const Field& x) const {

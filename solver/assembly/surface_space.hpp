@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "solver/assembly/element_batches.hpp"
-#include "solver/assembly/pack.hpp"
 #include "solver/assembly/symmetric_matrix.hpp"
 #include "solver/fe/quadrature.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/pack.hpp"
 
 namespace esfem {
 
@@ -46,6 +46,8 @@ class SurfaceSpace {
   int element_count() const { return static_cast<int>(elements_.rows()); }
   const Connectivity& elements() const { return elements_; }
   const Quadrature& quadrature() const { return rule_; }
+  /// The elements with the rule's shape functions, for sums over quadrature points outside this class.
+  const ElementBatches& batches() const { return batches_; }
   std::shared_ptr<const SparsityPattern> pattern() const { return pattern_; }
   /// The characteristic_length of the mesh that the space was made for; exactly 1 for surfaces of size one.
   double length() const { return length_; }
@@ -72,14 +74,8 @@ class SurfaceSpace {
   double volume(const Field& x) const;
 
  private:
-  /// Contravariant tangents: grad u = u_xi dual_xi + u_eta dual_eta, from the first fundamental form.
-  struct DualTangents {
-    Pack xi[3], eta[3];
-  };
-
   void require_rows(const Field& field, int columns) const;
   void require_matrix(const SymmetricMatrix& matrix) const;
-  static DualTangents dual_tangents(const BatchPoint& point);
   template <int inputs>
   PointData<inputs> point_data(const Batch& batch, int q, const BatchPoint& geometry,
                                const DualTangents& dual, const Pack (*u)[inputs + 1]) const;

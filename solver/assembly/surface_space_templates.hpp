@@ -6,19 +6,6 @@
 
 namespace esfem {
 
-inline SurfaceSpace::DualTangents SurfaceSpace::dual_tangents(const BatchPoint& point) {
-  // The inverse of the first fundamental form, applied to the tangents, is t_eta x n and n x t_xi over |n|².
-  DualTangents dual;
-  cross(point.tangent_eta, point.normal, dual.xi);
-  cross(point.normal, point.tangent_xi, dual.eta);
-  const Pack scale = point.inverse_jacobian * point.inverse_jacobian;
-  for (int i = 0; i < 3; ++i) {
-    dual.xi[i] *= scale;
-    dual.eta[i] *= scale;
-  }
-  return dual;
-}
-
 template <int inputs>
 PointData<inputs> SurfaceSpace::point_data(const Batch& batch, int q, const BatchPoint& geometry,
                                            const DualTangents& dual, const Pack (*u)[inputs + 1]) const {
@@ -63,7 +50,7 @@ void SurfaceSpace::assemble_load(const Field& x, const Field& u, const Function&
     Lanes regular = ~Lanes{};
     for (int q = 0; q < batches_.points(); ++q) {
       regular &= batches_.evaluate(batch, q, geometry);
-      const DualTangents dual = dual_tangents(geometry);
+      const DualTangents dual(geometry);
       integrand(point_data<inputs>(batch, q, geometry, dual, nodal), at_point);
       const Pack weight = batches_.weight(q) * geometry.jacobian;
       Pack value[outputs], flux_xi[fluxes + 1], flux_eta[fluxes + 1];
@@ -103,7 +90,7 @@ void SurfaceSpace::assemble_weighted_mass(const Field& x, const Field& u, const 
     Lanes regular = ~Lanes{};
     for (int q = 0; q < batches_.points(); ++q) {
       regular &= batches_.evaluate(batch, q, geometry);
-      const PointData<inputs> data = point_data<inputs>(batch, q, geometry, dual_tangents(geometry), nodal);
+      const PointData<inputs> data = point_data<inputs>(batch, q, geometry, DualTangents(geometry), nodal);
       mass_point_[q] = batch.one * batches_.weight(q) * geometry.jacobian * weight(data);
     }
     batches_.require_regular(regular, batch);

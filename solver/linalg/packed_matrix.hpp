@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstring>
 
-#include "solver/assembly/pack.hpp"
+#include "solver/pack.hpp"
 
 namespace esfem {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include "solver/assembly/pack.hpp"
 #include "solver/assembly/symmetric_matrix.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/pack.hpp"
 
 namespace esfem::test_symmetric_matrix {
 namespace {

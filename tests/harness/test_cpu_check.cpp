@@ -53,7 +53,7 @@ std::pair<int, std::string> CpuCheck::include_pack(int width, const std::string&
   const std::filesystem::path library = folder / ("width_" + std::to_string(width));
   std::filesystem::create_directories(library / "solver");
   std::ofstream(library / "solver/config.hpp") << "#define ESFEM_PACK_SIZE " << width << std::endl;
-  std::ofstream(library / "user.cpp") << "#include \"solver/assembly/pack.hpp\"" << std::endl;
+  std::ofstream(library / "user.cpp") << "#include \"solver/pack.hpp\"" << std::endl;
   // C++17's <algorithm> would look for TBB.
   return run(format("'%s' -std=c++14 -fsyntax-only -o /dev/null %s -I'%s' -I'%s' -isystem '%s' '%s/user.cpp'",
                     ESFEM_COMPILER, flags.c_str(), library.c_str(), ESFEM_SOURCE_DIR, ESFEM_EIGEN_DIR,

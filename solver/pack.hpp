@@ -80,6 +80,19 @@ inline Pack cos(const Pack& p) {
   return apply([](double value) { return std::cos(value); }, p);
 }
 
+/// Whether the lanes are all true.
+inline bool all(const Lanes& lanes) {
+  bool result = true;
+  for (int lane = 0; lane < pack_size; ++lane) result &= lanes[lane] != 0;
+  return result;
+}
+
+inline double sum_of_lanes(const Pack& p) {
+  double sum = 0;
+  for (int lane = 0; lane < pack_size; ++lane) sum += p[lane];
+  return sum;
+}
+
 /// Euclidean product of vectors in space.
 inline Pack dot(const Pack (&a)[3], const Pack (&b)[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
