@@ -252,14 +252,17 @@ ExactEvolution exact_derivative(MovingMesh& on) {
   exact.quantities = {{"u_derivative", 1}};
   exact.surface = [&on](double t) { return on.exact.ellipsoid().surface(t); };
   exact.trajectories = [&on](const Field&, double t) { return on.nodes.at(t); };
-  exact.fields = [value](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& values,
-                         Eigen::MatrixXd& gradients) {
+  exact.fields = [value](double t, const SurfacePoints& at, FieldsAtPoints& out) {
     const double step = 1e-5;
-    Vec3 gradient;
-    for (int i = 0; i < 3; ++i)
-      gradient[i] = (value(y + step * Vec3::Unit(i), t) - value(y - step * Vec3::Unit(i), t)) / (2 * step);
-    values = Eigen::VectorXd::Constant(1, value(y, t));
-    gradients = gradient - shape.normal.dot(gradient) * shape.normal;
+    for (int lane = 0; lane < pack_size; ++lane) {
+      const Vec3 y = lane_of(at.y, lane), nu = lane_of(at.normal, lane);
+      Vec3 gradient;
+      for (int i = 0; i < 3; ++i)
+        gradient[i] = (value(y + step * Vec3::Unit(i), t) - value(y - step * Vec3::Unit(i), t)) / (2 * step);
+      gradient -= nu.dot(gradient) * nu;
+      out.value[0][lane] = value(y, t);
+      for (int i = 0; i < 3; ++i) out.gradient[0][i][lane] = gradient[i];
+    }
   };
   return exact;
 }

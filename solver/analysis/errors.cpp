@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "solver/assembly/lifted_points.hpp"
-#include "solver/fe/lagrange.hpp"
 
 namespace esfem {
 
@@ -17,34 +16,34 @@ SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, con
 
 SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
                            double t, const Field& w) {
-  const int components = exact.components();
-  const ShapeTable shapes = shape_functions(space.degree(), space.quadrature().points);
-  const int points = static_cast<int>(shapes.value.rows()), nodes = static_cast<int>(shapes.value.cols());
-  // Nodal values of an element -> values and reference derivatives in its points: three rows a point.
-  Eigen::MatrixXd to_points(3 * points, nodes);
-  for (int q = 0; q < points; ++q) {
-    to_points.row(3 * q) = shapes.value.row(q);
-    to_points.row(3 * q + 1) = shapes.dxi.row(q);
-    to_points.row(3 * q + 2) = shapes.deta.row(q);
-  }
-  Eigen::MatrixXd local(nodes, components), at_points(3 * points, components);
-  Eigen::VectorXd exact_value(components);
-  Eigen::MatrixXd exact_gradient(3, components);
-  SquaredNorms norms{Eigen::VectorXd::Zero(components), Eigen::VectorXd::Zero(components)};
-  visit_lifted_points(space, x_star, exact.surface(t), [&](const LiftedPoint& point) {
-    if (point.q == 0) {
-      for (int i = 0; i < nodes; ++i) local.row(i) = w.row(space.elements()(point.element, i));
-      at_points.noalias() = to_points.lazyProduct(local);
-    }
-    exact.fields(t, point.y, point.shape, exact_value, exact_gradient);
+  const int components = exact.components(), nodes = space.batches().nodes();
+  std::vector<Pack> nodal(components * nodes), L2(components), H1_semi(components);
+  FieldsAtPoints at_points(components);
+  visit_lifted_points(space, x_star, exact.surface(t), [&](const Batch& batch, const LiftedPoints& points) {
+    if (points.q == 0)
+      for (int l = 0; l < components; ++l) space.batches().gather(batch, w, l, &nodal[l * nodes]);
+    exact.fields(t, points.on_surface, at_points);
+    const ElementBatches::Shape* shape = space.batches().shapes(points.q);
     for (int l = 0; l < components; ++l) {
-      const double* w_l = &at_points(3 * point.q, l);
-      const double e = w_l[0] - exact_value[l];
-      const Vec3 e_gradient = point.dual.col(0) * w_l[1] + point.dual.col(1) * w_l[2] - exact_gradient.col(l);
-      norms.L2[l] += point.dA * e * e;
-      norms.H1_semi[l] += point.dA * e_gradient.squaredNorm();
+      Pack e = -at_points.value[l], w_xi = {}, w_eta = {};
+      for (int a = 0; a < nodes; ++a) {
+        const Pack w_a = nodal[l * nodes + a];
+        e += shape[a].value * w_a;
+        w_xi += shape[a].dxi * w_a;
+        w_eta += shape[a].deta * w_a;
+      }
+      Pack e_gradient[3];
+      for (int i = 0; i < 3; ++i)
+        e_gradient[i] = points.dual.xi[i] * w_xi + points.dual.eta[i] * w_eta - at_points.gradient[l][i];
+      L2[l] += points.dA * e * e;
+      H1_semi[l] += points.dA * dot(e_gradient, e_gradient);
     }
   });
+  SquaredNorms norms{Eigen::VectorXd(components), Eigen::VectorXd(components)};
+  for (int l = 0; l < components; ++l) {
+    norms.L2[l] = sum_of_lanes(L2[l]);
+    norms.H1_semi[l] = sum_of_lanes(H1_semi[l]);
+  }
   return norms;
 }
 

@@ -138,16 +138,19 @@ ExactEvolution exact_evolution(const ManufacturedCahnHilliard& exact, MovingNode
   evolution.quantities = {{"u", 1}, {"w", 1}};
   evolution.surface = [&exact](double t) { return exact.ellipsoid().surface(t); };
   evolution.trajectories = [&nodes](const Field&, double t) { return nodes.at(t); };
-  evolution.fields = [&exact](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
-                              Eigen::MatrixXd& gradient) {
+  evolution.fields = [&exact](double t, const SurfacePoints& at, FieldsAtPoints& out) {
     const LevelSet d{exact.ellipsoid().a(t), exact.ellipsoid().radius};
-    const Concentration u_now = concentration(t);
-    const ValueAndGradient u = value_and_tangential_gradient(u_now, y, shape.normal);
-    const ValueAndGradient w =
-        value_and_tangential_gradient(Potential{d, u_now, exact.epsilon()}, y, shape.normal);
-    value << u.value, w.value;
-    gradient.col(0) = u.gradient;
-    gradient.col(1) = w.gradient;
+    const Concentration u = concentration(t);
+    const Potential w{d, u, exact.epsilon()};
+    for (int lane = 0; lane < pack_size; ++lane) {  // Jets are made of doubles
+      const Vec3 y = lane_of(at.y, lane), nu = lane_of(at.normal, lane);
+      const ValueAndGradient both[] = {value_and_tangential_gradient(u, y, nu),
+                                       value_and_tangential_gradient(w, y, nu)};
+      for (int l = 0; l < 2; ++l) {
+        out.value[l][lane] = both[l].value;
+        for (int i = 0; i < 3; ++i) out.gradient[l][i][lane] = both[l].gradient[i];
+      }
+    }
   };
   return evolution;
 }

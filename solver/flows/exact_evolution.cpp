@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/exact_evolution.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -26,16 +27,40 @@ int ExactEvolution::column(const std::string& name) const {
 
 Field ExactEvolution::nodal_values(const Field& x, double t) const {
   const Surface now = surface(t);
-  Field values(x.rows(), components());
-  Eigen::VectorXd value(components());
-  Eigen::MatrixXd gradient(3, components());
-  for (int j = 0; j < x.rows(); ++j) {
-    const Vec3 y = x.row(j);
-    fields(t, y, now.shape_at(y), value, gradient);
-    values.row(j) = value;
+  const int rows = static_cast<int>(x.rows());
+  Field values(rows, components());
+  FieldsAtPoints at_points(components());
+  Pack position[3];
+  for (int first = 0; first < rows; first += pack_size) {
+    // The last pack is filled up with the last point.
+    for (int i = 0; i < 3; ++i)
+      for (int lane = 0; lane < pack_size; ++lane) position[i][lane] = x(std::min(first + lane, rows - 1), i);
+    SurfacePoints points = now.closest_points(position);
+    // The points lie on the surface to round-off, and are to be what they are.
+    std::copy(position, position + 3, points.y);
+    fields(t, points, at_points);
+    for (int l = 0; l < values.cols(); ++l)
+      for (int lane = 0; lane < std::min(pack_size, rows - first); ++lane)
+        values(first + lane, l) = at_points.value[l][lane];
   }
   return values;
 }
+
+namespace {
+
+/// Position and normal from these columns on: grad id = P, grad nu = A.
+void set_position_and_normal(const SurfacePoints& at, int x, int nu, FieldsAtPoints& out) {
+  for (int i = 0; i < 3; ++i) {
+    out.value[x + i] = at.y[i];
+    out.value[nu + i] = at.normal[i];
+    for (int j = 0; j < 3; ++j) {
+      out.gradient[x + i][j] = at.projection(i, j);
+      out.gradient[nu + i][j] = at.weingarten[i][j];
+    }
+  }
+}
+
+}  // namespace
 
 ExactEvolution shrinking_sphere(double initial_radius) {
   const auto radius = [initial_radius](double t) {
@@ -52,13 +77,15 @@ ExactEvolution shrinking_sphere(double initial_radius) {
   exact.trajectories = [radius, initial_radius](const Field& x0, double t) -> Field {
     return x0 * (radius(t) / initial_radius);
   };
-  exact.fields = [radius](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
-                          Eigen::MatrixXd& gradient) {
+  exact.fields = [radius](double t, const SurfacePoints& at, FieldsAtPoints& out) {
     const double H = 2 / radius(t);
-    value << y, -H * shape.normal, shape.normal, H;
-    // grad id = P, grad nu = A, and H is constant on the sphere.
-    const Mat3 projection = Mat3::Identity() - shape.normal * shape.normal.transpose();
-    gradient << projection, -H * shape.weingarten, shape.weingarten, Vec3::Zero();
+    set_position_and_normal(at, 0, 6, out);
+    for (int i = 0; i < 3; ++i) {  // v = -H nu, H constant on the sphere
+      out.value[3 + i] = -H * at.normal[i];
+      for (int j = 0; j < 3; ++j) out.gradient[3 + i][j] = -H * at.weingarten[i][j];
+    }
+    out.value[9] = pack(H);
+    out.gradient[9] = {};
   };
   return exact;
 }
@@ -96,37 +123,35 @@ ExactEvolution shrinking_angenent_torus(double initial_scale) {
   exact.trajectories = [scale, initial_scale](const Field& x0, double t) {
     return angenent_trajectories(x0, initial_scale, scale(t));
   };
-  exact.fields = [scale](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
-                         Eigen::MatrixXd& gradient) {
-    const Vec3& nu = shape.normal;
-    const double factor = 0.5 / (scale(t) * scale(t)), H = factor * y.dot(nu);
-    value << y, -H * nu, nu, H;
-    // grad id = P, grad nu = A, grad H = A y/(2 scale²).
-    const Mat3 projection = Mat3::Identity() - nu * nu.transpose();
-    const Vec3 gradient_of_H = factor * shape.weingarten * y;
-    gradient << projection, -H * shape.weingarten - gradient_of_H * nu.transpose(), shape.weingarten,
-        gradient_of_H;
+  exact.fields = [scale](double t, const SurfacePoints& at, FieldsAtPoints& out) {
+    const double factor = 0.5 / (scale(t) * scale(t));
+    const Pack H = factor * dot(at.y, at.normal);
+    set_position_and_normal(at, 0, 6, out);
+    out.value[9] = H;
+    // grad H = A y/(2 scale²), v = -H nu.
+    for (int j = 0; j < 3; ++j) out.gradient[9][j] = factor * dot(at.weingarten[j], at.y);
+    for (int i = 0; i < 3; ++i) {
+      out.value[3 + i] = -H * at.normal[i];
+      for (int j = 0; j < 3; ++j)
+        out.gradient[3 + i][j] = -H * at.weingarten[i][j] - at.normal[i] * out.gradient[9][j];
+    }
   };
   return exact;
 }
 
 namespace {
 
-/// A surface at rest with quantities x, nu, H, from H and grad_Gamma H in a point where the normal is nu.
+/// A surface at rest with quantities x, nu, H; mean_curvature(at, gradient) returns H and sets grad_Gamma H.
 ExactEvolution stationary(
     const Surface& surface,
-    const std::function<std::pair<double, Vec3>(const Vec3& y, const Vec3& nu)>& mean_curvature) {
+    const std::function<Pack(const SurfacePoints& at, std::array<Pack, 3>& gradient)>& mean_curvature) {
   ExactEvolution exact;
   exact.quantities = {{"x", 3}, {"nu", 3}, {"H", 1}};
   exact.surface = [surface](double) { return surface; };
   exact.trajectories = [](const Field& x0, double) { return x0; };
-  exact.fields = [mean_curvature](double, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
-                                  Eigen::MatrixXd& gradient) {
-    const auto [H, gradient_of_H] = mean_curvature(y, shape.normal);
-    value << y, shape.normal, H;
-    // grad id = P, grad nu = A.
-    const Mat3 projection = Mat3::Identity() - shape.normal * shape.normal.transpose();
-    gradient << projection, shape.weingarten, gradient_of_H;
+  exact.fields = [mean_curvature](double, const SurfacePoints& at, FieldsAtPoints& out) {
+    set_position_and_normal(at, 0, 3, out);
+    out.value[6] = mean_curvature(at, out.gradient[6]);
   };
   return exact;
 }
@@ -134,18 +159,21 @@ ExactEvolution stationary(
 }  // namespace
 
 ExactEvolution stationary_sphere(double radius) {
-  return stationary(sphere(radius), [radius](const Vec3&, const Vec3&) {
-    return std::pair<double, Vec3>(2 / radius, Vec3::Zero());
+  return stationary(sphere(radius), [radius](const SurfacePoints&, std::array<Pack, 3>& gradient) {
+    gradient = {};
+    return pack(2 / radius);
   });
 }
 
 ExactEvolution stationary_torus(double major, double minor) {
-  return stationary(torus(major, minor), [major, minor](const Vec3& y, const Vec3& nu) {
+  return stationary(torus(major, minor), [=](const SurfacePoints& at, std::array<Pack, 3>& gradient) {
     // H = 1/r + cos(theta)/rho with rho = R + r cos(theta); its gradient is R/(r rho²) P e_rho.
-    const double rho = std::hypot(y[0], y[1]);
-    const Vec3 outward = Vec3(y[0], y[1], 0) / rho;
-    const Vec3 gradient = major / (minor * rho * rho) * (outward - nu.dot(outward) * nu);
-    return std::pair<double, Vec3>(2 / minor - major / (minor * rho), gradient);
+    const Pack inverse_rho = inverse_sqrt(at.y[0] * at.y[0] + at.y[1] * at.y[1]);
+    const Pack outward[3] = {at.y[0] * inverse_rho, at.y[1] * inverse_rho, Pack{}};
+    const Pack along_normal = dot(at.normal, outward);
+    for (int i = 0; i < 3; ++i)
+      gradient[i] = major / minor * inverse_rho * inverse_rho * (outward[i] - along_normal * at.normal[i]);
+    return 2 / minor - major / minor * inverse_rho;
   });
 }
 

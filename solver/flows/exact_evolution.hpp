@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,6 +10,15 @@
 #include "solver/types.hpp"
 
 namespace esfem {
+
+/// Values and tangential gradients of components in pack_size points of a surface: gradient[l][i] is the i-th
+/// coordinate of that of component l.
+struct FieldsAtPoints {
+  std::vector<Pack> value;
+  std::vector<std::array<Pack, 3>> gradient;
+
+  explicit FieldsAtPoints(int components) : value(components), gradient(components) {}
+};
 
 /// A known exact solution of a flow: the surface, the trajectories of its material points, and the solution's
 /// fields.
@@ -22,11 +32,8 @@ struct ExactEvolution {
   std::function<Surface(double t)> surface;
   /// Positions at time t of the points that start at x0 (N x 3).
   std::function<Field(const Field& x0, double t)> trajectories;
-  /// At a point y of the surface at time t: the components' values (all quantities side by side) and
-  /// tangential gradients (3 x components, columns are gradients).
-  std::function<void(double t, const Vec3& y, const Surface::Shape&, Eigen::VectorXd& value,
-                     Eigen::MatrixXd& gradient)>
-      fields;
+  /// In points of the surface at time t: the components, all quantities side by side.
+  std::function<void(double t, const SurfacePoints& at, FieldsAtPoints& out)> fields;
 
   int components() const;
   /// The first column of a quantity.

@@ -35,13 +35,22 @@ ExactEvolution growing_sphere() {
   exact.quantities = {{"x", 3}, {"v", 3}, {"u", 1}};
   exact.surface = [](double t) { return sphere(GrowingSphere(t).r); };
   exact.trajectories = [](const Field& x0, double t) -> Field { return GrowingSphere(t).r * x0; };
-  exact.fields = [](double t, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
-                    Eigen::MatrixXd& gradient) {
+  exact.fields = [](double t, const SurfacePoints& at, FieldsAtPoints& out) {
     const GrowingSphere s(t);
-    const Mat3 projection = Mat3::Identity() - shape.normal * shape.normal.transpose();
-    const Vec3 gradient_u = s.a * Vec3(y[1] * y[2], y[2] * y[0], y[0] * y[1]);
-    value << y, s.dr / s.r * y, s.a * y[0] * y[1] * y[2];
-    gradient << projection, s.dr / s.r * projection, projection * gradient_u;
+    const double rate = s.dr / s.r;
+    const Pack(&y)[3] = at.y;
+    for (int i = 0; i < 3; ++i) {
+      out.value[i] = y[i];
+      out.value[3 + i] = rate * y[i];
+      for (int j = 0; j < 3; ++j) {
+        out.gradient[i][j] = at.projection(i, j);
+        out.gradient[3 + i][j] = rate * at.projection(i, j);
+      }
+    }
+    out.value[6] = s.a * y[0] * y[1] * y[2];
+    const Pack in_space[3] = {s.a * y[1] * y[2], s.a * y[2] * y[0], s.a * y[0] * y[1]};
+    const Pack along_normal = dot(at.normal, in_space);
+    for (int j = 0; j < 3; ++j) out.gradient[6][j] = in_space[j] - along_normal * at.normal[j];
   };
   return exact;
 }

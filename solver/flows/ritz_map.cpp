@@ -8,16 +8,22 @@ namespace esfem {
 
 Field ritz_map(const SurfaceSpace& space, const Field& x, const Surface& surface,
                const std::function<ValueAndGradient(const Vec3& y)>& u, double length) {
-  const ShapeTable shapes = shape_functions(space.degree(), space.quadrature().points);
+  const ElementBatches& batches = space.batches();
   const double mass_factor = 1 / (length * length);
   Field load = Field::Zero(space.dofs(), 1);
-  visit_lifted_points(space, x, surface, [&](const LiftedPoint& point) {
-    const ValueAndGradient exact = u(point.y);
-    const Eigen::Vector2d flux = point.dual.transpose() * exact.gradient;
-    for (int i = 0; i < shapes.value.cols(); ++i) {
-      load(space.elements()(point.element, i), 0) +=
-          point.dA * (mass_factor * exact.value * shapes.value(point.q, i) +
-                      flux[0] * shapes.dxi(point.q, i) + flux[1] * shapes.deta(point.q, i));
+  visit_lifted_points(space, x, surface, [&](const Batch& batch, const LiftedPoints& points) {
+    Pack value, gradient[3];
+    for (int lane = 0; lane < pack_size; ++lane) {
+      const ValueAndGradient exact = u(lane_of(points.on_surface.y, lane));
+      value[lane] = exact.value;
+      for (int i = 0; i < 3; ++i) gradient[i][lane] = exact.gradient[i];
+    }
+    const Pack flux_xi = dot(points.dual.xi, gradient), flux_eta = dot(points.dual.eta, gradient);
+    const ElementBatches::Shape* shape = batches.shapes(points.q);
+    for (int a = 0; a < batches.nodes(); ++a) {
+      const Pack at_node = points.dA * (mass_factor * value * shape[a].value + flux_xi * shape[a].dxi +
+                                        flux_eta * shape[a].deta);
+      for (int lane = 0; lane < pack_size; ++lane) load(batch.node[pack_size * a + lane], 0) += at_node[lane];
     }
   });
   SymmetricMatrix M = space.matrix(), A = space.matrix();

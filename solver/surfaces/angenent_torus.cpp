@@ -152,16 +152,32 @@ AngenentProfile::Point closest(const HalfPlane& x, double scale) {
   return profile.at(profile.closest_arclength(x.r / scale, x.z / scale));
 }
 
-/// Signed distance delta: its Hessian is kappa/(1 + delta kappa) in each principal direction.
+/// Hessian of the signed distance at x, whose closest point is p and whose distance is delta:
+/// kappa/(1 + delta kappa) in each principal direction.
+Mat3 distance_hessian(const HalfPlane& x, const AngenentProfile::Point& p, double scale, double delta) {
+  const double meridian = p.meridian_curvature / (scale + delta * p.meridian_curvature),
+               parallel = p.parallel_curvature / (scale + delta * p.parallel_curvature);
+  const Vec3 tangent = x.vector(p.tangent), around = x.outward.cross(Vec3::UnitZ());
+  return meridian * tangent * tangent.transpose() + parallel * around * around.transpose();
+}
+
 LevelSetJet signed_distance(const Vec3& y, double scale) {
   const HalfPlane x(y);
   const AngenentProfile::Point p = closest(x, scale);
   const double delta = p.normal.dot(Eigen::Vector2d(x.r, x.z) - scale * p.position);
-  const double meridian = p.meridian_curvature / (scale + delta * p.meridian_curvature),
-               parallel = p.parallel_curvature / (scale + delta * p.parallel_curvature);
-  const Vec3 normal = x.vector(p.normal), tangent = x.vector(p.tangent),
-             around = x.outward.cross(Vec3::UnitZ());
-  return {delta, normal, meridian * tangent * tangent.transpose() + parallel * around * around.transpose()};
+  return {delta, x.vector(p.normal), distance_hessian(x, p, scale, delta)};
+}
+
+/// One search in the profile for the closest point and the shape there.
+SurfacePoints closest_points_of_angenent_torus(const Pack (&y)[3], double scale) {
+  SurfacePoints points;
+  for (int lane = 0; lane < pack_size; ++lane) {
+    const HalfPlane x(lane_of(y, lane));
+    const AngenentProfile::Point p = closest(x, scale);
+    set_lane(points, lane, scale * x.vector(p.position),
+             {x.vector(p.normal), distance_hessian(x, p, scale, 0)});
+  }
+  return points;
 }
 
 /// H, continued constantly along normals, and its derivatives in a point of the surface. On the shrinker H =
@@ -213,6 +229,9 @@ Surface angenent_torus(double scale) {
   surface.own_closest_point = [scale](const Vec3& y) -> Vec3 {
     const HalfPlane x(y);
     return scale * x.vector(closest(x, scale).position);
+  };
+  surface.own_closest_points = [scale](const Pack(&y)[3]) {
+    return closest_points_of_angenent_torus(y, scale);
   };
   surface.mean_curvature_jet = [scale](const Vec3& y) { return shrinker_mean_curvature(y, scale); };
   return surface;

@@ -110,6 +110,45 @@ Vec3 Surface::closest_point(const Vec3& x) const {
   throw no_closest_point(*this, x);
 }
 
+void set_lane(SurfacePoints& points, int lane, const Vec3& y, const Surface::Shape& shape) {
+  for (int i = 0; i < 3; ++i) {
+    points.y[i][lane] = y[i];
+    points.normal[i][lane] = shape.normal[i];
+    for (int j = 0; j < 3; ++j) points.weingarten[i][j][lane] = shape.weingarten(i, j);
+  }
+}
+
+SurfacePoints Surface::closest_points(const Pack (&x)[3]) const {
+  SurfacePoints points;
+  if (own_closest_points) {
+    points = own_closest_points(x);
+    const Pack sum = points.y[0] + points.y[1] + points.y[2];
+    if (all(sum - sum == 0.0)) return points;
+  }
+  for (int lane = 0; lane < pack_size; ++lane) {
+    const Vec3 y = closest_point(lane_of(x, lane));
+    set_lane(points, lane, y, shape_at(y));
+  }
+  return points;
+}
+
+namespace {
+
+SurfacePoints closest_points_of_sphere(double radius, const Pack (&x)[3]) {
+  const Pack inverse_distance = inverse_sqrt(dot(x, x));
+  const double curvature = 1 / radius;
+  SurfacePoints points;
+  for (int i = 0; i < 3; ++i) {
+    points.normal[i] = inverse_distance * x[i];
+    points.y[i] = radius * points.normal[i];
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) points.weingarten[i][j] = curvature * points.projection(i, j);
+  return points;
+}
+
+}  // namespace
+
 Surface sphere(double radius) {
   auto d = [radius](const auto& x1, const auto& x2, const auto& x3) {
     return (x1 * x1 + x2 * x2 + x3 * x3 - radius * radius) / (2.0 * radius);
@@ -120,6 +159,7 @@ Surface sphere(double radius) {
   surface.level_set = [radius](const Vec3& y) -> LevelSetJet {
     return {(y.squaredNorm() - radius * radius) / (2 * radius), y / radius, Mat3::Identity() / radius};
   };
+  surface.own_closest_points = [radius](const Pack(&x)[3]) { return closest_points_of_sphere(radius, x); };
   return surface;
 }
 
@@ -143,6 +183,80 @@ Vec3 closest_point_of_ellipsoid(const Vec3& axes, const Vec3& x) {
   return Vec3::Constant(NAN);
 }
 
+namespace {
+
+Pack larger(const Pack& a, const Pack& b) {
+  return a > b ? a : b;
+}
+
+/// closest_point_of_ellipsoid for pack_size points: the lanes that are done first go on at their roots. There
+/// grad d = D y and Hess d = D with D = diag(1/a_i²).
+SurfacePoints closest_points_of_ellipsoid(const Vec3& axes, const Pack (&x)[3]) {
+  const Vec3 squares = axes.cwiseAbs2(), excess = squares.array() - squares.minCoeff();
+  Pack left = pack(-INFINITY);
+  for (int i = 0; i < 3; ++i) left = larger(left, axes[i] * larger(x[i], -x[i]) - excess[i]);
+  Pack r = larger(left, pack(squares.minCoeff()));
+  Lanes done = {};
+  for (int iteration = 0; iteration < 100 && !all(done); ++iteration) {
+    Pack sum = pack(-1), slope = {};
+    for (int i = 0; i < 3; ++i) {
+      const Pack inverse = 1.0 / (excess[i] + r), scaled = axes[i] * x[i] * inverse;  // y_i/a_i
+      sum += scaled * scaled;
+      slope += 2.0 * scaled * scaled * inverse;
+    }
+    const Pack next = larger(left, r + sum / slope), change = larger(next - r, r - next);
+    done = change <= 1e-9 * r;  // then next is exact: order 2
+    r = next;
+  }
+  SurfacePoints points;
+  if (!all(done)) r = pack(NAN);
+  Pack gradient[3];
+  for (int i = 0; i < 3; ++i) {
+    gradient[i] = x[i] / (excess[i] + r);
+    points.y[i] = squares[i] * gradient[i];
+  }
+  const Pack inverse_slope = inverse_sqrt(dot(gradient, gradient));
+  Pack D_normal[3];
+  for (int i = 0; i < 3; ++i) {
+    points.normal[i] = inverse_slope * gradient[i];
+    D_normal[i] = points.normal[i] / squares[i];
+  }
+  // P D P = D - nu (D nu)^T - (D nu) nu^T + (nu . D nu) nu nu^T
+  const Pack along_normal = dot(points.normal, D_normal);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const Pack mixed = points.normal[i] * D_normal[j] + D_normal[i] * points.normal[j];
+      points.weingarten[i][j] = inverse_slope * ((i == j ? 1 / squares[i] : 0.0) - mixed +
+                                                 along_normal * points.normal[i] * points.normal[j]);
+    }
+  }
+  return points;
+}
+
+/// From the centre of the tube's circle that is closest to x. The curvatures are 1/r along the circle and nu
+/// . e_rho/rho around the axis.
+SurfacePoints closest_points_of_torus(double major, double minor, const Pack (&x)[3]) {
+  const Pack inverse_rho = inverse_sqrt(x[0] * x[0] + x[1] * x[1]);
+  const Pack outward[3] = {x[0] * inverse_rho, x[1] * inverse_rho, Pack{}};
+  const Pack around[3] = {-outward[1], outward[0], Pack{}};
+  Pack from_centre[3];
+  for (int i = 0; i < 3; ++i) from_centre[i] = x[i] - major * outward[i];
+  const Pack inverse_distance = inverse_sqrt(dot(from_centre, from_centre));
+  SurfacePoints points;
+  for (int i = 0; i < 3; ++i) {
+    points.normal[i] = inverse_distance * from_centre[i];
+    points.y[i] = major * outward[i] + minor * points.normal[i];
+  }
+  const Pack cosine = dot(points.normal, outward), parallel = cosine / (major + minor * cosine);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      points.weingarten[i][j] =
+          points.projection(i, j) / minor + (parallel - 1 / minor) * around[i] * around[j];
+  return points;
+}
+
+}  // namespace
+
 Surface ellipsoid(double a, double b, double c) {
   auto d = [=](const auto& x1, const auto& x2, const auto& x3) {
     return 0.5 * (x1 * x1 / (a * a) + x2 * x2 / (b * b) + x3 * x3 / (c * c) - 1.0);
@@ -158,6 +272,9 @@ Surface ellipsoid(double a, double b, double c) {
   surface.level_set = [weights = Vec3(1 / (a * a), 1 / (b * b), 1 / (c * c))](const Vec3& x) -> LevelSetJet {
     const Vec3 gradient = weights.cwiseProduct(x);
     return {0.5 * (gradient.dot(x) - 1), gradient, weights.asDiagonal()};
+  };
+  surface.own_closest_points = [axes = Vec3(a, b, c)](const Pack(&x)[3]) {
+    return closest_points_of_ellipsoid(axes, x);
   };
   return surface;
 }
@@ -175,6 +292,7 @@ Surface torus(double major, double minor) {
     const Vec3 centre = Vec3(x[0], x[1], 0).normalized() * major;
     return centre + (x - centre).normalized() * minor;
   };
+  surface.own_closest_points = [=](const Pack(&x)[3]) { return closest_points_of_torus(major, minor, x); };
   return surface;
 }
 

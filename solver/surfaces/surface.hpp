@@ -8,6 +8,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "solver/pack.hpp"
 #include "solver/surfaces/nested_jets.hpp"
 #include "solver/types.hpp"
 
@@ -19,6 +20,19 @@ struct LevelSetJet {
   Vec3 gradient;
   Mat3 hessian;
 };
+
+/// pack_size points of a surface at once, with the normals and Weingarten maps there.
+struct SurfacePoints {
+  Pack y[3], normal[3], weingarten[3][3];
+
+  /// Entry of P = I - nu nu^T.
+  Pack projection(int i, int j) const { return (i == j ? 1.0 : 0.0) - normal[i] * normal[j]; }
+};
+
+/// The vector of one lane.
+inline Vec3 lane_of(const Pack (&x)[3], int lane) {
+  return {x[0][lane], x[1][lane], x[2][lane]};
+}
 
 /// A smooth closed surface {d = 0} with d < 0 inside, so that nu = grad d/|grad d| points outward.
 struct Surface {
@@ -34,6 +48,9 @@ struct Surface {
   std::function<Vec3(const Vec3&)> own_closest_point = {};
   /// The mean curvature div(grad d/|grad d|) of the level set through y as a function of space.
   std::function<LevelSetJet(const Vec3&)> mean_curvature_jet = {};
+  /// This surface's own way to pack_size closest points, where it is faster than one after the other; not
+  /// finite where it fails.
+  std::function<SurfacePoints(const Pack (&x)[3])> own_closest_points = {};
 
   /// Outward unit normal of the level set through y. Pointwise; y need not lie on the surface.
   Vec3 normal(const Vec3& y) const;
@@ -56,7 +73,13 @@ struct Surface {
   /// The closest point of the surface, to 1e-12 of the bounding radius, for x near it (within the reach).
   /// Throws NumericsError when Newton's iteration does not converge.
   Vec3 closest_point(const Vec3& x) const;
+  /// The closest points of pack_size points with their normals and Weingarten maps, as closest_point and
+  /// shape_at have them one by one.
+  SurfacePoints closest_points(const Pack (&x)[3]) const;
 };
+
+/// Fills in one lane: the point y of a surface, and its shape there.
+void set_lane(SurfacePoints& points, int lane, const Vec3& y, const Surface::Shape& shape);
 
 template <class T>
 using SpaceJet = ceres::Jet<T, 3>;

@@ -6,6 +6,8 @@
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/constants.hpp"
+#include "solver/fe/lagrange.hpp"
+#include "solver/mesh/profile_grid.hpp"
 
 namespace esfem::test_errors {
 namespace {
@@ -16,10 +18,17 @@ ExactEvolution still(const Surface& surface) {
   exact.quantities = {{"x", 3}, {"nu", 3}, {"one", 1}};
   exact.surface = [surface](double) { return surface; };
   exact.trajectories = [](const Field& x0, double) { return x0; };
-  exact.fields = [](double, const Vec3& y, const Surface::Shape& shape, Eigen::VectorXd& value,
-                    Eigen::MatrixXd& gradient) {
-    value << y, shape.normal, 1;
-    gradient << Mat3::Identity() - shape.normal * shape.normal.transpose(), shape.weingarten, Vec3::Zero();
+  exact.fields = [](double, const SurfacePoints& at, FieldsAtPoints& out) {
+    for (int i = 0; i < 3; ++i) {
+      out.value[i] = at.y[i];
+      out.value[3 + i] = at.normal[i];
+      for (int j = 0; j < 3; ++j) {
+        out.gradient[i][j] = at.projection(i, j);
+        out.gradient[3 + i][j] = at.weingarten[i][j];
+      }
+    }
+    out.value[6] = pack(1);
+    out.gradient[6] = {};
   };
   return exact;
 }
@@ -76,6 +85,87 @@ TEST(LiftedErrors, OfTheInterpolationHaveTheOrdersOfInterpolation) {
     }
     EXPECT_NEAR(std::log(L2[0] / L2[1]) / std::log(h[0] / h[1]), degree + 1, 0.35) << degree;
     EXPECT_NEAR(std::log(H1_semi[0] / H1_semi[1]) / std::log(h[0] / h[1]), degree, 0.35) << degree;
+  }
+}
+
+/// lifted_errors point by point, as its definition says.
+SquaredNorms errors_one_by_one(const SurfaceSpace& space, const Field& x, const ExactEvolution& exact,
+                               double t, const Field& w) {
+  const Surface surface = exact.surface(t);
+  const Quadrature& rule = space.quadrature();
+  const ShapeTable shapes = shape_functions(space.degree(), rule.points);
+  const int components = exact.components();
+  FieldsAtPoints fields(components);
+  SquaredNorms norms{Eigen::VectorXd::Zero(components), Eigen::VectorXd::Zero(components)};
+  for (int element = 0; element < space.element_count(); ++element) {
+    const auto nodes = space.elements().row(element);
+    const Field x_e = x(nodes, Eigen::all), w_e = w(nodes, Eigen::all);
+    for (int q = 0; q < rule.weights.size(); ++q) {
+      Eigen::Matrix<double, 2, Eigen::Dynamic> d_shapes(2, nodes.size());
+      d_shapes << shapes.dxi.row(q), shapes.deta.row(q);
+      const Vec3 position = (shapes.value.row(q) * x_e).transpose();
+      const Vec3 y = surface.closest_point(position);
+      const Surface::Shape shape = surface.shape_at(y);
+      const double s = shape.normal.dot(position - y);
+      const Mat3 projection = Mat3::Identity() - shape.normal * shape.normal.transpose();
+      const Eigen::Matrix<double, 3, 2> tangents =
+          (Mat3::Identity() + s * shape.weingarten).inverse() * projection * (d_shapes * x_e).transpose();
+      const Eigen::Matrix2d metric = tangents.transpose() * tangents;
+      const double dA = rule.weights[q] * std::sqrt(metric.determinant());
+
+      SurfacePoints points;
+      for (int lane = 0; lane < pack_size; ++lane) set_lane(points, lane, y, shape);
+      exact.fields(t, points, fields);
+      const Eigen::MatrixXd w_gradient = tangents * metric.inverse() * (d_shapes * w_e);
+      for (int l = 0; l < components; ++l) {
+        const double e = shapes.value.row(q).dot(w_e.col(l)) - fields.value[l][0];
+        Vec3 e_gradient = w_gradient.col(l);
+        for (int i = 0; i < 3; ++i) e_gradient[i] -= fields.gradient[l][i][0];
+        norms.L2[l] += dA * e * e;
+        norms.H1_semi[l] += dA * e_gradient.squaredNorm();
+      }
+    }
+  }
+  return norms;
+}
+
+/// The largest relative difference of two squared norms.
+double difference(const SquaredNorms& a, const SquaredNorms& b) {
+  const auto relative = [](const Eigen::VectorXd& p, const Eigen::VectorXd& q) {
+    return ((p - q).cwiseAbs().array() / q.array()).maxCoeff();
+  };
+  return std::max(relative(a.L2, b.L2), relative(a.H1_semi, b.H1_semi));
+}
+
+TEST(LiftedErrors, InBatchesAreThoseOfTheDefinitionPointByPoint) {
+  Surface without_own_closest_point = ellipsoid(1, 1, 0.6);
+  without_own_closest_point.own_closest_point = {};
+  without_own_closest_point.own_closest_points = {};
+  const struct {
+    ExactEvolution exact;
+    double t;
+    Mesh coarse;
+  } cases[] = {{shrinking_sphere(1), 0.1, icosphere(std::sqrt(0.6), 1)},
+               {still(ellipsoid(1, 1, 0.6)), 0, stretched_icosphere(1)},
+               {still(without_own_closest_point), 0, stretched_icosphere(1)},
+               {stationary_torus(1, 0.4), 0, torus_grid(1, 0.4, 9, 7)},
+               {shrinking_angenent_torus(), 0, angenent_torus_grid(12, 9)}};
+  for (const auto& [exact, t, coarse] : cases) {
+    for (int degree : {1, 2, 3, 4}) {
+      // The last batch is not full, whatever the width of a Pack.
+      Mesh part = coarse;
+      part.elements.conservativeResize(coarse.elements.rows() - 1, Eigen::NoChange);
+      const Mesh mesh = curved(exact.surface(t), part, degree);
+      const SurfaceSpace space(mesh);
+      Field w(space.dofs(), exact.components());
+      for (int l = 0; l < w.cols(); ++l)
+        for (int j = 0; j < w.rows(); ++j) w(j, l) = std::sin(1 + l + 2 * mesh.nodes(j, l % 3));
+      const SquaredNorms expected = errors_one_by_one(space, mesh.nodes, exact, t, w);
+      EXPECT_LT(difference(lifted_errors(space, mesh.nodes, exact, t, w), expected), 1e-12) << degree;
+      // An error of 1e-9 would be seen.
+      w(0, 0) += 1e-6;
+      EXPECT_GT(difference(lifted_errors(space, mesh.nodes, exact, t, w), expected), 1e-11) << degree;
+    }
   }
 }
 

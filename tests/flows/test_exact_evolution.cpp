@@ -12,17 +12,30 @@
 namespace esfem::test_exact_evolution {
 namespace {
 
-/// The largest difference of a value or gradient to what the surface's level set says, in the nodes x.
-double deviation_from_level_set(const ExactEvolution& exact, const Surface& surface, const Field& x) {
+/// Value and gradient (3 x components) of the exact fields in one point.
+std::pair<Eigen::VectorXd, Eigen::MatrixXd> fields_at(const ExactEvolution& exact, double t, const Vec3& y) {
+  SurfacePoints points;
+  for (int lane = 0; lane < pack_size; ++lane) set_lane(points, lane, y, exact.surface(t).shape_at(y));
+  FieldsAtPoints fields(exact.components());
+  exact.fields(t, points, fields);
   Eigen::VectorXd value(exact.components());
   Eigen::MatrixXd gradient(3, exact.components());
+  for (int l = 0; l < exact.components(); ++l) {
+    value[l] = fields.value[l][0];
+    for (int i = 0; i < 3; ++i) gradient(i, l) = fields.gradient[l][i][0];
+  }
+  return {value, gradient};
+}
+
+/// The largest difference of a value or gradient to what the surface's level set says, in the nodes x.
+double deviation_from_level_set(const ExactEvolution& exact, const Surface& surface, const Field& x) {
   double largest = 0;
   const auto compare = [&](const auto& difference) {
     largest = std::max(largest, difference.cwiseAbs().maxCoeff());
   };
   for (int j = 0; j < x.rows(); ++j) {
     const Vec3 y = x.row(j), nu = surface.normal(y);
-    exact.fields(0.3, y, exact.surface(0.3).shape_at(y), value, gradient);
+    const auto [value, gradient] = fields_at(exact, 0.3, y);
     compare(value.segment<3>(exact.column("x")) - y);
     compare(value.segment<3>(exact.column("nu")) - nu);
     compare(value.segment<1>(exact.column("H")).array() - surface.mean_curvature(y));
@@ -119,12 +132,10 @@ TEST(ShrinkingAngenentTorus, GradientOfTheVelocityIsThatOfMinusHNu) {
   const ExactEvolution exact = shrinking_angenent_torus();
   const Surface surface = exact.surface(t);
   const auto v = [&](const Vec3& y) -> Vec3 { return -surface.mean_curvature(y) * surface.normal(y); };
-  Eigen::VectorXd value(exact.components());
-  Eigen::MatrixXd gradient(3, exact.components());
   const Field x = angenent_nodes(std::sqrt(1 - t));
   for (int j = 0; j < x.rows(); ++j) {
     const Vec3 y = x.row(j);
-    exact.fields(t, y, surface.shape_at(y), value, gradient);
+    const auto [value, gradient] = fields_at(exact, t, y);
     EXPECT_LT((value.segment<3>(3) - v(y)).norm(), 1e-11);
     for (int i = 0; i < 3; ++i) {
       const Vec3 next = surface.closest_point(y + step * Vec3::Unit(i)),

@@ -330,6 +330,41 @@ TEST(ParametrisedSurface, TheirMeshesSatisfyGaussBonnet) {
   }
 }
 
+TEST(Surface, ClosestPointsInPacksAreThoseOneByOne) {
+  for (const Surface& surface : all_surfaces()) {
+    const double curvature = 1 / surface.smallest_curvature_radius;
+    const std::vector<Vec3> on_surface = random_points(surface, 10 * pack_size);
+    for (size_t first = 0; first < on_surface.size(); first += pack_size) {
+      Pack x[3];
+      for (int lane = 0; lane < pack_size; ++lane) {
+        const Vec3& y = on_surface[first + lane];
+        const Vec3 near = y + (lane % 3 - 1) * 0.2 * surface.smallest_curvature_radius * surface.normal(y);
+        for (int i = 0; i < 3; ++i) x[i][lane] = near[i];
+      }
+      const SurfacePoints points = surface.closest_points(x);
+      for (int lane = 0; lane < pack_size; ++lane) {
+        const Vec3 y = surface.closest_point(lane_of(x, lane));
+        const Surface::Shape shape = surface.shape_at(y);
+        EXPECT_LT((lane_of(points.y, lane) - y).norm(), 1e-13 * surface.bounding_radius) << surface.name;
+        EXPECT_LT((lane_of(points.normal, lane) - shape.normal).norm(), 1e-12) << surface.name;
+        for (int i = 0; i < 3; ++i) {
+          const Vec3 row = shape.weingarten.row(i);
+          EXPECT_LT((lane_of(points.weingarten[i], lane) - row).norm(), 1e-11 * curvature) << surface.name;
+        }
+      }
+    }
+  }
+}
+
+TEST(Surface, OnePointOfAPackWithoutClosestPointIsAnError) {
+  for (const Surface& surface : {sphere(2), ellipsoid(2, 1, 0.7)}) {
+    Pack x[3] = {pack(surface.bounding_radius), Pack{}, Pack{}};
+    EXPECT_NO_THROW(surface.closest_points(x)) << surface.name;
+    x[0][pack_size - 1] = 0;
+    EXPECT_THROW(surface.closest_points(x), NumericsError) << surface.name;
+  }
+}
+
 TEST(Surface, StatedBoundsHold) {
   for (const Surface& surface : all_surfaces()) {
     double largest_curvature = 0;
