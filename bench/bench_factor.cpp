@@ -156,12 +156,11 @@ void register_factor_benchmarks() {
     add("sphere/P1/" + nodes, rounds, [=] { return icosphere(2, subdivisions + 1); });
     add("sphere/P2/" + nodes, rounds, [=] { return quadratic_icosphere(2, subdivisions); });
   }
-  for (const double edge_length : {0.3, 0.15, 0.075, 0.0375})
-    add("torus/P2/" + std::to_string(edge_length), edge_length > 0.1 ? 30 : 7,
-        [=] { return torus_mesh(edge_length, 2); });
-  for (const double edge_length : {0.15, 0.075, 0.0375})
-    add("torus/P1/" + std::to_string(edge_length), edge_length > 0.07 ? 30 : 7,
-        [=] { return torus_mesh(edge_length, 1); });
+  // About as many nodes, not in rows.
+  for (const double edge_length : {0.47, 0.235, 0.117, 0.058})
+    for (const int degree : {1, 2})
+      add("torus/P" + std::to_string(degree) + "/" + std::to_string(edge_length), edge_length > 0.2 ? 30 : 7,
+          [=] { return torus_mesh(degree == 1 ? edge_length / 2 : edge_length, degree); });
   benchmark::RegisterBenchmark("factor/dense_product", dense_product)
       ->Unit(benchmark::kMillisecond)
       ->Iterations(10);
