@@ -69,21 +69,22 @@ void SymmetricBlockSolver::solve(Field& r_to_u, Field& s_to_w) {
 
   y_ = right_;
   factor_.solve(y_);
+  const auto size = [&] {
+    return right_.norm() + row_size_.cwiseProduct(y_).norm() + std::numeric_limits<double>::min();
+  };
   const auto backward_error = [&] {
     multiply(y_, correction_);
     correction_ = right_ - correction_;
-    const double size = right_.norm() + row_size_.cwiseProduct(y_).norm();
-    return correction_.norm() / (size + std::numeric_limits<double>::min());
+    return correction_.norm() / size();
   };
   double error = backward_error();
-  for (int n = 0; n < most_refinements && error > largest_backward_error; ++n) {
+  for (int iteration = 0; iteration < most_refinements && error > largest_backward_error; ++iteration) {
     factor_.solve(correction_);
     y_ += correction_;
     error = backward_error();
   }
   if (!(error <= largest_backward_error)) {
     // K P^-1 z = the rest of the right-hand side, P the factors
-    const double size = right_.norm() + row_size_.cwiseProduct(y_).norm();
     const Eigen::VectorXd rest = correction_;
     Eigen::VectorXd z = Eigen::VectorXd::Zero(rest.size());
     Field work;
@@ -93,7 +94,7 @@ void SymmetricBlockSolver::solve(Field& r_to_u, Field& s_to_w) {
       multiply(work, correction_);
       to = correction_;
     };
-    solve_gmres(map, rest, largest_backward_error * size / rest.norm(), most_gmres_iterations, z);
+    solve_gmres(map, rest, largest_backward_error * size() / rest.norm(), most_gmres_iterations, z);
     work = z;
     factor_.solve(work);
     y_ += work;

@@ -28,6 +28,16 @@ inline SparsityPattern graph_pattern(int nodes, const std::vector<std::pair<int,
   return pattern;
 }
 
+/// Edges between neighbours in the rows and columns of a square grid, whose nodes are numbered row by row.
+inline std::vector<std::pair<int, int>> grid_edges(int width) {
+  std::vector<std::pair<int, int>> edges;
+  for (int i = 1; i < width * width; ++i) {
+    if (i % width) edges.emplace_back(i, i - 1);
+    if (i >= width) edges.emplace_back(i, i - width);
+  }
+  return edges;
+}
+
 struct NamedPattern {
   std::string name;
   SparsityPattern pattern;
@@ -49,7 +59,7 @@ inline std::vector<NamedPattern> special_patterns() {
   const auto add = [&](const std::string& name, int nodes, const std::vector<std::pair<int, int>>& edges) {
     patterns.push_back({name, graph_pattern(nodes, edges)});
   };
-  std::vector<std::pair<int, int>> path, star, tree, clique, cliques, grid, arrow;
+  std::vector<std::pair<int, int>> path, star, tree, clique, cliques, arrow;
   for (int i = 1; i < 100; ++i) {
     path.emplace_back(i - 1, i);
     star.emplace_back(0, i);
@@ -58,8 +68,6 @@ inline std::vector<NamedPattern> special_patterns() {
       clique.emplace_back(i, j);
       if (i / 10 == j / 10) cliques.emplace_back(i, j);
     }
-    if (i % 10) grid.emplace_back(i, i - 1);
-    if (i >= 10) grid.emplace_back(i, i - 10);
     for (int j = 90; j < i; ++j) arrow.emplace_back(i, j);
     if (i < 90) arrow.emplace_back(i, 95);
   }
@@ -71,9 +79,9 @@ inline std::vector<NamedPattern> special_patterns() {
   add("binary tree", 100, tree);
   add("clique", 100, clique);
   add("ten cliques", 100, cliques);
-  add("grid", 100, grid);
+  add("grid", 100, grid_edges(10));
   add("arrow", 100, arrow);
-  add("a grid and isolated nodes", 130, grid);
+  add("a grid and isolated nodes", 130, grid_edges(10));
   return patterns;
 }
 

@@ -229,17 +229,12 @@ TEST(SymmetricFactor, ReplacesSmallPivotsWhereAsked) {
 
 class Threads : public testing::Test {
  protected:
+  static constexpr int width = 150;
+  const SparsityPattern pattern = graph_pattern(width * width, grid_edges(width));
   ~Threads() override { set_thread_count(1); }
 };
 
 TEST_F(Threads, GiveTheSameBits) {
-  std::vector<std::pair<int, int>> edges;
-  const int width = 150;
-  for (int i = 1; i < width * width; ++i) {
-    if (i % width) edges.emplace_back(i, i - 1);
-    if (i >= width) edges.emplace_back(i, i - width);
-  }
-  const SparsityPattern pattern = graph_pattern(width * width, edges);
   const auto blocks = random_blocks<double, 1>(pattern);
   const Field right = Field::Random(pattern.size, 3);
   Field first;
@@ -259,13 +254,6 @@ TEST_F(Threads, GiveTheSameBits) {
 
 TEST_F(Threads, AnErrorInOneOfThemIsThrown) {
   set_thread_count(2);
-  std::vector<std::pair<int, int>> edges;
-  const int width = 150;
-  for (int i = 1; i < width * width; ++i) {
-    if (i % width) edges.emplace_back(i, i - 1);
-    if (i >= width) edges.emplace_back(i, i - width);
-  }
-  const SparsityPattern pattern = graph_pattern(width * width, edges);
   const auto good = random_blocks<double, 1>(pattern);
   SymmetricFactor<double> factor(pattern, {1});
   for (int node = 0; node < pattern.size; node += 1234) {
