@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+
+#include "solver/linalg/block_solver.hpp"
+#include "solver/linalg/spd_solver.hpp"
+#include "tests/linalg/random_systems.hpp"
+
+// Counts what is allocated: every call of malloc, operator new's and Eigen's included, comes by here. A
+// sanitizer has a malloc of its own.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+#define ESFEM_COUNTS_ALLOCATIONS
+static std::atomic<int> allocations = 0;
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+#else
+static std::atomic<int> allocations = 0;
+#endif
+
+namespace esfem::test_no_allocation {
+namespace {
+
+/// How often work() allocates memory when it is called for the second time.
+template <class Work>
+int allocations_of_second_call(const Work& work) {
+  work();
+  const int before = allocations;
+  work();
+  return allocations - before;
+}
+
+class NoAllocation : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifndef ESFEM_COUNTS_ALLOCATIONS
+    GTEST_SKIP() << "this build cannot count allocations";
+#endif
+  }
+
+  std::shared_ptr<const SparsityPattern> pattern =
+      std::make_shared<const SparsityPattern>(graph_pattern(2500, grid_edges(50)));
+};
+
+/// The matrix with `diagonal` on the diagonal and -1 off it.
+SymmetricMatrix laplacian(const std::shared_ptr<const SparsityPattern>& pattern, double diagonal) {
+  SymmetricMatrix A{pattern, Eigen::VectorXd::Constant(pattern->entry_count(), -1)};
+  for (int j = 0; j < pattern->size; ++j) A.values[pattern->column_start[j]] = diagonal;
+  return A;
+}
+
+TEST_F(NoAllocation, TheCounterSeesThoseOfEigenAndOfNew) {
+  EXPECT_GE(allocations_of_second_call([] { Eigen::VectorXd(1000).setRandom(); }), 1);
+  EXPECT_GE(allocations_of_second_call([] { std::vector<double>(1000).at(999) = 1; }), 1);
+}
+
+TEST_F(NoAllocation, InFactorisationsAndSolvesFromTheSecondCallOn) {
+  const SymmetricMatrix M = laplacian(pattern, 8), A = laplacian(pattern, 5);
+  const Field right = Field::Ones(pattern->size, 4);
+  Field u = right, w = right;
+
+  SpdSolver spd(pattern);
+  EXPECT_EQ(allocations_of_second_call([&] {
+              spd.factorise(2, M, 1, A);
+              spd.solve(u);
+            }),
+            0);
+  BlockSolver block(pattern);
+  EXPECT_EQ(allocations_of_second_call([&] {
+              block.factorise(2, 1, 1, M, A);
+              block.solve(u, w);
+              block.refine(2.001, 1, 1, M, A, right, right, 9, u, w);
+            }),
+            0);
+  const auto blocks = random_blocks<double, 4>(*pattern);
+  SymmetricFactor<double, 4> factor(*pattern, {1, 1, 1, 1});
+  SymmetricFactor<double, 4>::Right four = Eigen::MatrixXd::Ones(4 * pattern->size, 6);
+  EXPECT_EQ(allocations_of_second_call([&] {
+              factor.factorise(entries<double, 4>(blocks));
+              factor.solve(four);
+            }),
+            0);
+}
+
+}  // namespace
+}  // namespace esfem::test_no_allocation
