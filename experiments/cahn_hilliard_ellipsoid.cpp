@@ -211,12 +211,6 @@ Field theta_of(const SurfaceSpace& space, const State& start) {
                              load_of_g(space, DoubleWell(), 0, start.x, start.u));
 }
 
-Field u_and_w(const State& state) {
-  Field columns(state.u.rows(), 2);
-  columns << state.u, state.w;
-  return columns;
-}
-
 using ExactState = std::function<State(double t)>;
 
 /// Starting values. From interpolated u, w comes from the second equation.
@@ -269,7 +263,7 @@ ExactEvolution exact_derivative(MovingMesh& on) {
 
 /// Errors of d•u from Ritz maps with theta, where the backward differences of u stand for the derivative
 /// along the nodes: in L2 over [q tau, 1], the integrals as sums over the steps.
-void run_derivative(MovingMesh& on, const TimeGrid& grid, Row& row) {
+void run_derivative(MovingMesh& on, const UniformSteps& grid, Row& row) {
   const ExactState starts = exact_starts(on, StartValues::ritz);
   const State start = starts(0);
   Flow flow = cahn_hilliard_flow(on, theta_of(on.space, start));
@@ -277,7 +271,7 @@ void run_derivative(MovingMesh& on, const TimeGrid& grid, Row& row) {
   const std::vector<double> delta = bdf_delta(grid.order);
   std::deque<Field> newest;  // first, of q + 1 steps
   double L2 = 0, H1_semi = 0;
-  integrate(flow, grid, start, starts, [&](int n, const State& state) {
+  integrate(flow, grid, {start, starts}, [&](int n, const State& state) {
     newest.push_front(state.u);
     if (n < grid.order) return;
     newest.resize(grid.order + 1);
@@ -294,7 +288,7 @@ void run_derivative(MovingMesh& on, const TimeGrid& grid, Row& row) {
 
 /// Errors against the exact solution: maxima over n >= 0, or n >= q from interpolated starting values. As
 /// printed the first line of (8.3) has f where it should have tau f: the load is too large by 1/tau.
-void run_convergence(MovingMesh& on, const std::string& kind, const TimeGrid& grid, Row& row) {
+void run_convergence(MovingMesh& on, const std::string& kind, const UniformSteps& grid, Row& row) {
   const bool ritz = kind != "interpolation";
   const ExactState starts = exact_starts(on, ritz ? StartValues::ritz : StartValues::interpolation);
   const State start = starts(0);
@@ -303,10 +297,10 @@ void run_convergence(MovingMesh& on, const std::string& kind, const TimeGrid& gr
 
   const ExactEvolution exact = exact_evolution(on.exact, on.nodes);
   ErrorRecorder errors(on.space, exact, on.mesh.nodes), initial_errors(on.space, exact, on.mesh.nodes);
-  initial_errors.record(0, u_and_w(start));
+  initial_errors.record(start);
   const int first = ritz ? 0 : grid.order;
-  integrate(flow, grid, start, starts, [&](int n, const State& state) {
-    if (n >= first) errors.record(state.t, u_and_w(state));
+  integrate(flow, grid, {start, starts}, [&](int n, const State& state) {
+    if (n >= first) errors.record(state);
   });
   row.errors = errors.maxima();
   for (const auto& [quantity, norms] : initial_errors.maxima()) row.errors[quantity + "_initial"] = norms;
@@ -315,8 +309,8 @@ void run_convergence(MovingMesh& on, const std::string& kind, const TimeGrid& gr
 
 /// Errors from orders_begin on against the solution of the same discretisation in space, by BDF5 and small
 /// steps.
-void run_order(MovingMesh& on, const TimeGrid& grid, Row& row) {
-  const TimeGrid small{
+void run_order(MovingMesh& on, const UniformSteps& grid, Row& row) {
+  const UniformSteps small{
       5, on.smallest_tau, static_cast<int>(std::lround(time_steps.end_time / on.smallest_tau)), {}};
   const ExactState starts = exact_starts(on, StartValues::ritz);
   const State start = starts(0);
@@ -326,7 +320,7 @@ void run_order(MovingMesh& on, const TimeGrid& grid, Row& row) {
   LargestDifferences differences(on.space, {{"u", 1}, {"w", 1}});
   const int first = static_cast<int>(std::lround(orders_begin / grid.tau));
   reference.compare(grid.order, grid.tau, first, [&](int, const State& state, const State& exact) {
-    differences.add(state.x, u_and_w(state) - u_and_w(exact));
+    differences.add(state.x, state, exact);
   });
   row.errors = differences.errors();
 }
@@ -338,7 +332,7 @@ nlohmann::json labels(const Run& run) {
 Row run_cell(const Setting& setting, const Run& run, const SharedMesh& shared, Row row) {
   MovingMesh& on = moving_mesh(setting, run, *shared);
   describe_mesh(on.mesh, row);
-  const TimeGrid grid{run.bdf, row.tau, row.steps, setting.start};
+  const UniformSteps grid{run.bdf, row.tau, row.steps, setting.start};
   if (run.kind == "order") {
     run_order(on, grid, row);
   } else if (run.kind == "derivative") {

@@ -166,12 +166,12 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   Series series;
   std::optional<Checkpoint> checkpoint = checkpoint_in(folder, cell_name(run));
   if (checkpoint) attach(*checkpoint, series);
-  const TimeGrid grid{run.bdf, row.tau, row.steps, setting.start};
+  const UniformSteps grid{run.bdf, row.tau, row.steps, setting.start};
   const auto record = [&](int, const CahnHilliardState& state) {
     record_energy(space, state, epsilon, series);
   };
   const CahnHilliardState start = initial_state(space, mesh.nodes);
-  integrate(flow, grid, start, {}, record, checkpoint ? &*checkpoint : nullptr);
+  integrate(flow, grid, start, checkpoint ? &*checkpoint : nullptr, record);
   if (checkpoint) row.seconds = checkpoint->seconds_before();
 
   // 4. The row of the table.

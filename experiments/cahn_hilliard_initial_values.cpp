@@ -197,12 +197,12 @@ InitialValues initial_values(const SurfaceSpace& space, const Field& x, const Ru
 
 /// Integrates a scheme from its initial values.
 void integrate_scheme(const SurfaceSpace& space, const Mesh& mesh, const Setting& setting, const Run& run,
-                      const TimeGrid& grid, const std::function<void(int, const State&)>& observe) {
+                      const UniformSteps& grid, const std::function<void(int, const State&)>& observe) {
   const InitialValues start = initial_values(space, mesh.nodes, run, setting.epsilon);
   MovingNodes nodes(moving_ellipsoid.velocity(), mesh.nodes, grid.tau / grid.start.substeps_per_step);
   const NodalMotion motion = [&](double t) -> const Field& { return nodes.at(t); };
   CahnHilliard flow(space, DoubleWell(), motion, setting.epsilon, start.theta);
-  integrate(flow, grid, start.state, {}, observe);
+  integrate(flow, grid, start.state, observe);
 }
 
 /// The solution of (3.12) at each step, which that of another scheme is compared with.
@@ -211,7 +211,7 @@ struct Reference {
 };
 
 Reference interpolation_run(const SurfaceSpace& space, const Mesh& mesh, const Setting& setting, Run run,
-                            const TimeGrid& grid) {
+                            const UniformSteps& grid) {
   run.scheme = "interpolation";
   Reference reference;
   integrate_scheme(space, mesh, setting, run, grid, [&](int, const State& state) {
@@ -263,7 +263,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   describe_mesh(mesh, row);
 
   // 2. The scheme, and beside it (3.12).
-  const TimeGrid grid{setting.bdf, row.tau, row.steps, setting.start};
+  const UniformSteps grid{setting.bdf, row.tau, row.steps, setting.start};
   const bool compared = run.scheme != "interpolation";
   Reference reference;
   if (compared) reference = interpolation_run(space, mesh, setting, run, grid);
@@ -275,7 +275,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
     if (compared) record_differences(space, state, reference, n, series);
     const bool due = next_snapshot < snapshot_times.size() && state.t > snapshot_times[next_snapshot] - 1e-9;
     if (due) ++next_snapshot;
-    if (due || n == 0 || n == row.steps) recorder.record(n, state.t, state.x, point_fields(state));
+    if (due || n == 0 || n == row.steps) recorder.record(n, state.t, state.x, nodal_fields(state));
   });
   recorder.finish();
 

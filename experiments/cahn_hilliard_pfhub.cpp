@@ -36,7 +36,7 @@
 #include "solver/error.hpp"
 #include "solver/flows/pfhub_sphere.hpp"
 #include "solver/mesh/generate.hpp"
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace {
 
@@ -235,33 +235,20 @@ class Observer {
 
 using Observe = std::function<void(int, const State&)>;
 
-void integrate_moose_steps(Flow& flow, State next, const Observe& observe) {
-  const std::vector<double> times = moose_times();
-  History<State> past(1);
-  for (int n = 0; n < static_cast<int>(times.size()); ++n)
-    at_step(n, times[n], [&] {
-      next.t = times[n];
-      if (n > 0) flow.step(past, 1, times[n] - times[n - 1], next);
-      check_finite(next);
-      observe(n, next);
-      past.push(next);
-    });
-}
-
 /// Integrates with the steps of the run; what they were goes into the row.
 void integrate_run(const Run& run, Flow& flow, const State& start, const Observe& observe,
                    Checkpoint* checkpoint, Row& row) {
   if (run.stepping == Stepping::moose) {
-    integrate_moose_steps(flow, start, observe);
-    row.steps = static_cast<int>(moose_times().size()) - 1;
+    row.steps = integrate(flow, GivenTimes{1, moose_times()}, start, observe).steps;
     return;
   }
-  AdaptiveGrid grid;
+  AdaptiveSteps grid;
+  grid.controlled = "u";
   grid.order = run.bdf;
   grid.end_time = run.end_time;
   grid.tolerance = run.tolerance();
   grid.first_step = first_step;
-  const AdaptiveRun done = integrate_adaptive(flow, grid, start, &State::u, observe, checkpoint);
+  const StepCount done = integrate(flow, grid, start, checkpoint, observe);
   row.steps = done.steps;
   row.values["rejected_steps"] = done.rejected;
 }
@@ -276,16 +263,16 @@ void release(const Mesh& linear, const Field& c, Row& row) {
   const SurfaceSpace space(mesh);
   const NodalMotion at_rest = [&](double) -> const Field& { return mesh.nodes; };
   Flow flow(space, PfhubSphere(), at_rest, PfhubSphere::epsilon, linearised_again_from);
-  AdaptiveGrid grid;
+  AdaptiveSteps grid;
+  grid.controlled = "u";
   grid.end_time = 5000;
   grid.tolerance = largest_tolerance;
   grid.first_step = first_step;
-  integrate_adaptive(flow, grid, pfhub_state(space, mesh.nodes, c_fine), &State::u,
-                     [&](int, const State& state) {
-                       const double energy = pfhub_energy(space, state.x, state.u);
-                       if (state.t <= 100) row.values["released_energy_at_100"] = energy;
-                       row.values["released_energy_at_5000"] = energy;
-                     });
+  integrate(flow, grid, pfhub_state(space, mesh.nodes, c_fine), [&](int, const State& state) {
+    const double energy = pfhub_energy(space, state.x, state.u);
+    if (state.t <= 100) row.values["released_energy_at_100"] = energy;
+    row.values["released_energy_at_5000"] = energy;
+  });
 }
 
 Row run_cell(const Run& run, Row row, const std::string& folder) {

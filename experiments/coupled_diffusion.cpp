@@ -133,13 +133,10 @@ class ExtrapolationAsPrinted {
         problem_(parameters, CoupledDiffusionVariant::regularised),
         scheme_(space, 1, parameters, {}, {}) {}
 
-  void step(const History<State>& history, int q, double tau, State& next) {
-    History<State> reversed(q);
-    for (int j = 0; j < q; ++j) {
-      State state = history.back(j);
-      reversed.push(state);
-    }
-    scheme_.extrapolate(reversed, q);
+  void step(const BdfStep<State>& step, State& next) {
+    std::array<const State*, max_bdf_order> oldest_first = {};
+    for (int j = 0; j < step.order; ++j) oldest_first[j] = &step.past(step.order - 1 - j);
+    scheme_.extrapolate({step.t, step.tau, step.order, bdf_weights(step.order), oldest_first});
     Field loads;
     const auto f_and_g = [&](const PointData<1>& p, Integrand<4, 0>& load) {
       Pack f[1];
@@ -149,7 +146,7 @@ class ExtrapolationAsPrinted {
       for (int i = 0; i < 3; ++i) load.value[1 + i] = g * p.normal[i];
     };
     space_.assemble_load<1, 4, 0>(scheme_.x_tilde(), scheme_.u_tilde(), f_and_g, loads);
-    scheme_.advance(history, q, tau, loads, next);
+    scheme_.advance(step, loads, next);
   }
 
  private:
@@ -171,25 +168,25 @@ struct GrowingSphereRuns {
   /// Runs from the exact initial values and calls observe(n, state) at each step. starts: the starting values
   /// of BDF.
   template <class Observer>
-  void run(const TimeGrid& grid, CoupledDiffusionVariant variant, GrowingSphereProblem::Coupling coupling,
+  void run(const UniformSteps& grid, CoupledDiffusionVariant variant, GrowingSphereProblem::Coupling coupling,
            const Starts& starts, Observer&& observe) const {
     const CoupledDiffusionParameters parameters;
     CoupledDiffusion<GrowingSphereProblem> flow(
         space, GrowingSphereProblem(parameters, variant.law, coupling), parameters, variant);
-    integrate(flow, grid, exact_state(0), starts, observe);
+    integrate(flow, grid, {exact_state(0), starts}, observe);
   }
 
   /// The state at the end with the extrapolation as printed.
-  State end_of_printed(const TimeGrid& grid) const {
+  State end_of_printed(const UniformSteps& grid) const {
     ExtrapolationAsPrinted flow(space, {});
     State end;
-    integrate(flow, grid, exact_state(0), Starts([&](double t) { return exact_state(t); }),
+    integrate(flow, grid, {exact_state(0), Starts([&](double t) { return exact_state(t); })},
               [&](int, const State& state) { end = state; });
     return end;
   }
 
   /// The state at the end.
-  State end_of(const TimeGrid& grid, CoupledDiffusionVariant variant, const Starts& starts,
+  State end_of(const UniformSteps& grid, CoupledDiffusionVariant variant, const Starts& starts,
                GrowingSphereProblem::Coupling coupling = GrowingSphereProblem::additive) const {
     State end;
     run(grid, variant, coupling, starts, [&](int n, const State& state) {
@@ -199,7 +196,7 @@ struct GrowingSphereRuns {
   }
 
   /// The same with exact starting values.
-  State end_of(const TimeGrid& grid, CoupledDiffusionVariant variant,
+  State end_of(const UniformSteps& grid, CoupledDiffusionVariant variant,
                GrowingSphereProblem::Coupling coupling = GrowingSphereProblem::additive) const {
     return end_of(
         grid, variant, [&](double t) { return exact_state(t); }, coupling);
@@ -207,8 +204,8 @@ struct GrowingSphereRuns {
 };
 
 /// The state at the end with one of the mass matrices, and how long it took.
-State timed_end_of(const GrowingSphereRuns& runs, const TimeGrid& grid, CoupledDiffusionVariant::Mass mass,
-                   double& seconds) {
+State timed_end_of(const GrowingSphereRuns& runs, const UniformSteps& grid,
+                   CoupledDiffusionVariant::Mass mass, double& seconds) {
   CoupledDiffusionVariant variant;
   variant.mass = mass;
   const auto begin = std::chrono::steady_clock::now();
@@ -219,7 +216,7 @@ State timed_end_of(const GrowingSphereRuns& runs, const TimeGrid& grid, CoupledD
 
 /// (7.2) beside (2.19): the difference in u, how large it is beside the error of (2.19), how large the error
 /// of (7.2) is beside that, and how much longer (7.2) takes.
-void run_difference(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
+void run_difference(const GrowingSphereRuns& runs, const UniformSteps& grid, Row& row) {
   double extrapolated = 0, reassembled = 0;
   const State one = timed_end_of(runs, grid, CoupledDiffusionVariant::extrapolated, extrapolated);
   const State two = timed_end_of(runs, grid, CoupledDiffusionVariant::reassembled, reassembled);
@@ -237,7 +234,7 @@ void run_difference(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& ro
 }
 
 /// How many times as long as (2.19) a run of (7.2) takes: the median of pairs of runs.
-void run_cost(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
+void run_cost(const GrowingSphereRuns& runs, const UniformSteps& grid, Row& row) {
   std::vector<double> ratios;
   for (int pair = 0; pair < 5; ++pair) {
     double extrapolated = 0, reassembled = 0;
@@ -251,7 +248,7 @@ void run_cost(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
 
 /// How much a constant error of u grows until the end, relative to u: by the load f, which the manufactured
 /// solution needs. exp(t²) undoes the decay of u.
-void run_growth(const GrowingSphereRuns& runs, TimeGrid grid, Row& row) {
+void run_growth(const GrowingSphereRuns& runs, UniformSteps grid, Row& row) {
   const double excess = 1e-5;
   grid.start = parse_start("substeps:16");
   const CoupledDiffusionParameters parameters;
@@ -263,7 +260,7 @@ void run_growth(const GrowingSphereRuns& runs, TimeGrid grid, Row& row) {
     const State exact = runs.exact_state(0);
     State end;
     integrate(flow, grid, coupled_diffusion_state(runs.space, 0, exact.x, exact.v, exact.u.array() + added),
-              {}, [&](int, const State& state) { end = state; });
+              [&](int, const State& state) { end = state; });
     return end.u.mean();
   };
   const double end_time = time_steps.end_time;
@@ -272,9 +269,9 @@ void run_growth(const GrowingSphereRuns& runs, TimeGrid grid, Row& row) {
 }
 
 /// Errors at the end against the solution of the same discretisation in space, by BDF5 and small steps.
-void run_order(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
-  const TimeGrid small{5, time_steps.tau(reference_k), time_steps.count(reference_k),
-                       parse_start("substeps:128")};
+void run_order(const GrowingSphereRuns& runs, const UniformSteps& grid, Row& row) {
+  const UniformSteps small{5, time_steps.tau(reference_k), time_steps.count(reference_k),
+                           parse_start("substeps:128")};
   const CoupledDiffusionParameters parameters;
   CoupledDiffusion<GrowingSphereProblem> flow(
       runs.space, GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised), parameters, {});
@@ -282,14 +279,14 @@ void run_order(const GrowingSphereRuns& runs, const TimeGrid& grid, Row& row) {
   LargestDifferences differences(runs.space, runs.exact.quantities);
   reference.compare(grid.order, grid.tau, grid.order, [&](int n, const State& state, const State& exact) {
     if (n < grid.steps) return;
-    differences.add(runs.exact.trajectories(runs.x0, time_steps.end_time),
-                    table_columns(state) - table_columns(exact));
+    differences.add(runs.exact.trajectories(runs.x0, time_steps.end_time), state, exact);
   });
   row.errors = differences.errors();
 }
 
 /// Errors against the exact solution at the end.
-void run_convergence(const GrowingSphereRuns& runs, const std::string& kind, const TimeGrid& grid, Row& row) {
+void run_convergence(const GrowingSphereRuns& runs, const std::string& kind, const UniformSteps& grid,
+                     Row& row) {
   CoupledDiffusionVariant variant;
   if (kind == "dynamic") variant.law = CoupledDiffusionVariant::dynamic;
   const auto coupling = kind == "quotient" ? GrowingSphereProblem::quotient
@@ -298,7 +295,7 @@ void run_convergence(const GrowingSphereRuns& runs, const std::string& kind, con
   const State end =
       kind == "extrapolation" ? runs.end_of_printed(grid) : runs.end_of(grid, variant, coupling);
   ErrorRecorder errors(runs.space, runs.exact, runs.x0);
-  errors.record(time_steps.end_time, table_columns(end));
+  errors.record(end);
   row.errors = errors.maxima();
   row.series = errors.series();
 }
@@ -317,7 +314,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row) {
 
   // 2. The time steps, and the errors at their end.
   const GrowingSphereRuns runs{space, mesh.nodes};
-  const TimeGrid grid{run.bdf, row.tau, row.steps, setting.start};
+  const UniformSteps grid{run.bdf, row.tau, row.steps, setting.start};
   try {
     if (run.kind == "difference") {
       run_difference(runs, grid, row);

@@ -34,7 +34,7 @@
 #include "solver/flows/phase_separation.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/thread_count.hpp"
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace {
 
@@ -46,14 +46,14 @@ using ExactState = std::function<State(double)>;
 
 /// The field that adaptive steps follow: u where the flow has one, else the positions.
 template <class State, class = void>
-constexpr Field State::*controlled = &State::x;
+constexpr const char* controlled = "x";
 template <class State>
-constexpr Field State::*controlled<State, std::void_t<decltype(&State::u)>> = &State::u;
+constexpr const char* controlled<State, std::void_t<decltype(&State::u)>> = "u";
 
 /// Their units on a surface with length L: L for positions, 1/L for H, none for normals and u.
 template <class State>
 std::vector<double> units_of_controlled(const State&, double L) {
-  return controlled<State> == &State::x ? std::vector<double>(3, L) : std::vector<double>();
+  return controlled<State>[0] == 'x' ? std::vector<double>(3, L) : std::vector<double>();
 }
 std::vector<double> units_of_controlled(const MeanCurvatureFlow::State&, double L) {
   return {1, 1, 1, 1 / L};
@@ -146,12 +146,12 @@ RegularityLimits limits(const Run& run, double size_of_u = 0) {
 template <class Flow, class State = typename std::decay_t<Flow>::State>
 void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactState<State>& exact) {
   const EvolveConfig& config = run.config;
-  TimeGrid grid = config.grid;
+  UniformSteps grid = config.grid;
   if (!config.start_given && !exact) grid.start = parse_start("substeps:16");
   const double end = config.adaptive ? config.adaptive->end_time : grid.steps * grid.tau;
   const bool terminal = isatty(STDERR_FILENO);
   const auto observe = [&](int n, const State& state) {
-    run.recorder.record(n, state.t, state.x, point_fields(state));
+    run.recorder.record(n, state.t, state.x, nodal_fields(state));
     record_more(run, state);
     if (n == 1) look_at_first_step(run);
     if (n % steps_between_comparisons == 0) compare_curvature(run);
@@ -163,11 +163,12 @@ void run_flow(Flow&& flow, const Run& run, const State& initial, const ExactStat
   };
   note_stop_signals();
   if (config.adaptive) {
-    AdaptiveGrid adaptive = *config.adaptive;
+    AdaptiveSteps adaptive = *config.adaptive;
+    adaptive.controlled = controlled<State>;
     adaptive.units = units_of_controlled(initial, run.space.length());
-    integrate_adaptive(flow, adaptive, initial, controlled<State>, observe, run.checkpoint);
+    integrate(flow, adaptive, initial, run.checkpoint, observe);
   } else {
-    integrate(flow, grid, initial, exact, observe, run.checkpoint);
+    integrate(flow, grid, {initial, exact}, run.checkpoint, observe);
   }
 }
 
@@ -253,7 +254,7 @@ void run_willmore(const Run& run) {
 
 void run_manufactured_cahn_hilliard(const Run& run) {
   const EvolveConfig& config = run.config;
-  const TimeGrid& grid = config.grid;
+  const UniformSteps& grid = config.grid;
   const ManufacturedCahnHilliard exact(EvolvingEllipsoid(), config.cahn_hilliard.epsilon);
   MovingNodes nodes(exact.ellipsoid().velocity(), config.mesh.nodes, grid.tau / grid.start.substeps_per_step);
   const NodalMotion motion = [&](double t) -> const Field& { return nodes.at(t); };

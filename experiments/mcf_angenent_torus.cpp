@@ -27,12 +27,12 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/mcf_columns.hpp"
 #include "experiments/harness/method_options.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/dziuk_flow.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/profile_grid.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
@@ -155,11 +155,9 @@ struct TorusRuns {
   using State = typename Flow::State;
 
   /// Errors against the exact solution, over all steps.
-  void convergence(const TimeGrid& grid, Row& row) {
+  void convergence(const UniformSteps& grid, Row& row) {
     ErrorRecorder errors(space, exact, x0);
-    DiscreteCurvature curvature(space);
-    integrate(flow, grid, exact_state(0.0), std::function<State(double)>(exact_state),
-              [&](int, const State& state) { errors.record(state.t, mcf_columns(state, curvature)); });
+    integrate(flow, grid, {exact_state(0.0), exact_state}, errors);
     row.errors = errors.maxima();
     row.series = errors.series();
   }
@@ -167,17 +165,15 @@ struct TorusRuns {
   /// Errors at the end against the same discretisation in space with small steps. It gives the starting
   /// values at t = 0.1, too: what the interpolation of the exact ones leaves in the fast modes has died out
   /// there.
-  void order(const TimeGrid& grid, Row& row) {
+  void order(const UniformSteps& grid, Row& row) {
     const int ratio = 1 << finer_by, last = static_cast<int>(std::lround(time_steps.end_time / grid.tau));
-    const TimeGrid small{reference_bdf, grid.tau / ratio, ratio * last, parse_start("substeps:16")};
+    const UniformSteps small{reference_bdf, grid.tau / ratio, ratio * last, parse_start("substeps:16")};
     const SmallSteps<Flow> solution(flow, small, exact_state(0.0), {}, ratio);
     LargestDifferences differences(space, exact.quantities);
-    DiscreteCurvature curvature(space);
     solution.compare(grid.order, grid.tau, last - grid.steps + grid.order,
                      [&](int n, const State& state, const State& exactly) {
                        if (n < last) return;
-                       differences.add(exactly.x,
-                                       mcf_columns(state, curvature) - mcf_columns(exactly, curvature));
+                       differences.add(exactly.x, state, exactly);
                      });
     row.errors = differences.errors();
   }
@@ -196,7 +192,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row) {
 
   // 2. The time steps, with the errors of each or at the end.
   const ExactEvolution exact = shrinking_angenent_torus();
-  const TimeGrid grid{run.bdf, row.tau, row.steps, setting.start};
+  const UniformSteps grid{run.bdf, row.tau, row.steps, setting.start};
   const auto measure = [&](auto&& runs) {
     run.kind == "order" ? runs.order(grid, row) : runs.convergence(grid, row);
   };

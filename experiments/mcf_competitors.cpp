@@ -27,13 +27,13 @@
 #include "experiments/harness/distance.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/mcf_columns.hpp"
 #include "experiments/harness/method_options.hpp"
 #include "experiments/harness/timed.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/bgn_flow.hpp"
 #include "solver/flows/dziuk_flow.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/profile_grid.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
@@ -124,13 +124,12 @@ void run_flow(Flow&& flow, int bdf, const ExactState& exact_state, const Surface
   using State = typename std::decay_t<Flow>::State;
   Timed<std::decay_t<Flow>> timed{flow};
   ErrorRecorder errors(space, exact, x0);
-  DiscreteCurvature curvature(space);
   const int every = std::max(1, row.steps / recorded_steps);
   double farthest = 0;
-  integrate(timed, TimeGrid{bdf, row.tau, row.steps, Start{}}, exact_state(0.0),
-            std::function<State(double)>(exact_state), [&](int n, const State& state) {
+  integrate(timed, UniformSteps{bdf, row.tau, row.steps, Start{}},
+            {exact_state(0.0), std::function<State(double)>(exact_state)}, [&](int n, const State& state) {
               if (n % every != 0 && n != row.steps) return;
-              errors.record(state.t, mcf_columns(state, curvature));
+              errors.record(state);
               farthest = std::max(farthest, distance(exact.surface(state.t), state.x));
             });
   row.errors = errors.maxima();

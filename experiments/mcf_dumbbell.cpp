@@ -177,13 +177,13 @@ void record_node_density(const Connectivity& elements, const Field& x, Series& s
 /// Runs a flow until its end, or until it is singular or fails; returns the status of the row.
 template <class Flow>
 std::string run_flow(Flow flow, const SurfaceSpace& space, const typename Flow::State& initial,
-                     const TimeGrid& grid, RunRecorder& recorder) {
+                     const UniformSteps& grid, RunRecorder& recorder) {
   const auto record = [&](int n, const typename Flow::State& state) {
-    recorder.record(n, state.t, state.x, point_fields(state));
+    recorder.record(n, state.t, state.x, nodal_fields(state));
     record_profile(state.x, recorder.series());
     record_node_density(space.elements(), state.x, recorder.series());
   };
-  return run_to_end([&] { integrate(flow, grid, initial, {}, record); }, recorder);
+  return run_to_end([&] { integrate(flow, grid, initial, record); }, recorder);
 }
 
 MeanCurvatureFlow::Variant variant_of(const std::string& method) {
@@ -244,7 +244,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   // 2. The time steps, until the end or the singularity.
   const bool bgn = !has_start(run.method);
   const std::string flow = bgn ? "bgn" : run.method == "dziuk" ? "dziuk" : "mean_curvature";
-  const TimeGrid grid{bgn ? 1 : setting.bdf, row.tau, row.steps, run.start};
+  const UniformSteps grid{bgn ? 1 : setting.bdf, row.tau, row.steps, run.start};
   RunRecorder recorder(space, snapshot_plan(folder, snapshot_times, flow, row));
   if (bgn) {
     row.status = run_flow(BgnFlow(space), space, bgn_state_on(space, mesh.nodes), grid, recorder);

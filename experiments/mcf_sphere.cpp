@@ -26,12 +26,12 @@
 
 #include "experiments/harness/experiment.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/mcf_columns.hpp"
 #include "experiments/harness/method_options.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/exact_evolution.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
 
 namespace {
@@ -105,29 +105,28 @@ Setting resolve(const Options& options, const OwnOptions& own) {
 
 /// Runs the flow, records the errors of each step and shows its end.
 template <class Flow, class ExactState>
-void run_flow(Flow flow, const SurfaceSpace& space, const TimeGrid& grid, const ExactState& exact_state,
-              ErrorRecorder& errors, const std::function<void(const typename Flow::State&)>& at_end) {
+void run_flow(Flow flow, const UniformSteps& grid, const ExactState& exact_state, ErrorRecorder& errors,
+              const std::function<void(const typename Flow::State&)>& at_end) {
   using State = typename Flow::State;
-  DiscreteCurvature curvature(space);
-  integrate(flow, grid, exact_state(0.0), std::function<State(double)>(exact_state),
+  integrate(flow, grid, {exact_state(0.0), std::function<State(double)>(exact_state)},
             [&](int n, const State& state) {
-              errors.record(state.t, mcf_columns(state, curvature));
+              errors.record(state);
               if (n == grid.steps) at_end(state);
             });
 }
 
 /// The last state of a run of (5.1) from given initial values.
-MeanCurvatureFlow::State end_of(const SurfaceSpace& space, const TimeGrid& grid,
+MeanCurvatureFlow::State end_of(const SurfaceSpace& space, const UniformSteps& grid,
                                 const MeanCurvatureFlow::State& initial) {
   MeanCurvatureFlow flow(space, {});
   MeanCurvatureFlow::State end;
-  integrate(flow, grid, initial, {}, [&](int, const MeanCurvatureFlow::State& state) { end = state; });
+  integrate(flow, grid, initial, [&](int, const MeanCurvatureFlow::State& state) { end = state; });
   return end;
 }
 
 /// How much an error in the length of nu_h grows until the end: |nu_h| of a run whose initial normals are a
 /// little too long, compared with a run where they are not.
-double growth_of_length(const SurfaceSpace& space, const TimeGrid& grid,
+double growth_of_length(const SurfaceSpace& space, const UniformSteps& grid,
                         const MeanCurvatureFlow::State& initial) {
   const double excess = 1e-4;
   MeanCurvatureFlow::State disturbed = initial;
@@ -139,12 +138,12 @@ double growth_of_length(const SurfaceSpace& space, const TimeGrid& grid,
 }
 
 /// How many times as long as one of Dziuk's scheme a run of (5.1) takes: the median of pairs of runs.
-double cost_ratio(const SurfaceSpace& space, const TimeGrid& grid, const ExactEvolution& exact,
+double cost_ratio(const SurfaceSpace& space, const UniformSteps& grid, const ExactEvolution& exact,
                   const Field& x0) {
   const auto seconds = [&](auto flow, const auto& exact_state) {
     using State = decltype(exact_state(0.0));
     const auto begin = std::chrono::steady_clock::now();
-    integrate(flow, grid, exact_state(0.0), std::function<State(double)>(exact_state),
+    integrate(flow, grid, {exact_state(0.0), std::function<State(double)>(exact_state)},
               [](int, const State&) {});
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
@@ -171,17 +170,17 @@ bool starts_with(const std::string& text, const std::string& beginning) {
 }
 
 /// A run whose errors are measured at each step.
-void run_with_errors(const Run& run, const SurfaceSpace& space, const TimeGrid& grid, const Field& x0,
+void run_with_errors(const Run& run, const SurfaceSpace& space, const UniformSteps& grid, const Field& x0,
                      const ExactEvolution& exact, Row& row) {
   ErrorRecorder errors(space, exact, x0);
   if (starts_with(run.flow, "dziuk")) {
     if (run.flow == "dziuk") warn(dziuk_warning(grid.order));
     run_flow(
-        DziukFlow(space), space, grid, [&](double t) { return exact_dziuk_state(exact, x0, t); }, errors,
+        DziukFlow(space), grid, [&](double t) { return exact_dziuk_state(exact, x0, t); }, errors,
         [](const DziukFlow::State&) {});
   } else {
     run_flow(
-        MeanCurvatureFlow(space, {}), space, grid,
+        MeanCurvatureFlow(space, {}), grid,
         [&](double t) { return exact_mean_curvature_state(exact, x0, t); }, errors,
         [&](const MeanCurvatureFlow::State& end) {
           row.values["distance_of_normals"] = distance_of_normals(space, end);
@@ -203,7 +202,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row) {
   const ExactEvolution exact = shrinking_sphere(initial_radius);
 
   // 3. The time steps, and what is measured of them.
-  const TimeGrid grid{run.bdf, row.tau, row.steps, run.start};
+  const UniformSteps grid{run.bdf, row.tau, row.steps, run.start};
   if (run.flow == "disturbed_normal") {
     row.values["growth_of_length"] =
         growth_of_length(space, grid, exact_mean_curvature_state(exact, mesh.nodes, 0));

@@ -36,7 +36,7 @@
 #include "solver/error.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/generate.hpp"
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace {
 
@@ -169,15 +169,16 @@ void describe_end(Row& row) {
 void integrate_run(const Setting& setting, const Run& run, const WillmoreStart& start, WillmoreFlow& flow,
                    const std::function<void(int, const State&)>& observe, Checkpoint* checkpoint, Row& row) {
   if (run.adaptive()) {
-    AdaptiveGrid grid;
+    AdaptiveSteps grid;
+    grid.controlled = "u";
     grid.end_time = time_steps.end_time;
     grid.largest_step = row.tau;
     grid.tolerance = run.tolerance();
-    const AdaptiveRun done = integrate_adaptive(flow, grid, start.state, &State::u, observe, checkpoint);
+    const StepCount done = integrate(flow, grid, start.state, checkpoint, observe);
     row.steps = done.steps;
     row.values["rejected_steps"] = done.rejected;
   } else {
-    integrate(flow, {setting.bdf, row.tau, row.steps, setting.start}, start.state, {}, observe, checkpoint);
+    integrate(flow, {setting.bdf, row.tau, row.steps, setting.start}, start.state, checkpoint, observe);
   }
 }
 
@@ -201,7 +202,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   // 3. The time steps.
   RunRecorder recorder(space, snapshot_plan(folder, {0.01, 0.05, 0.1, 0.2}, "surface_diffusion", row));
   const auto observe = [&](int n, const State& state) {
-    recorder.record(n, state.t, state.x, point_fields(state));
+    recorder.record(n, state.t, state.x, nodal_fields(state));
     record_roundness(state.x, recorder.series());
   };
   std::optional<Checkpoint> checkpoint = checkpoint_in(folder, cell_name(run));

@@ -73,10 +73,10 @@ Row run_cell(const Setting& setting, Row row, const std::string& folder) {
       tumour_growth_state(space, mesh.nodes, kinetics, 0.01, disturbance_seed);
 
   // 3. The time steps.
-  const TimeGrid grid{setting.bdf, row.tau, row.steps, setting.start};
+  const UniformSteps grid{setting.bdf, row.tau, row.steps, setting.start};
   RunRecorder recorder(space, snapshot_plan(folder, {2, 3, 4}, "coupled_diffusion", row));
-  integrate(flow, grid, initial, {}, [&](int n, const CoupledDiffusionState& state) {
-    recorder.record(n, state.t, state.x, point_fields(state));
+  integrate(flow, grid, initial, [&](int n, const CoupledDiffusionState& state) {
+    recorder.record(n, state.t, state.x, nodal_fields(state));
     Series& series = recorder.series();
     series["min_u1"].push_back(state.u.col(0).minCoeff());
     series["max_u1"].push_back(state.u.col(0).maxCoeff());

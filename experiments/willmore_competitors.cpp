@@ -148,35 +148,22 @@ Setting resolve(const Options& options, const OwnOptions& own) {
   return setting;
 }
 
-/// x, nu, H side by side, the columns of the error tables.
-Field columns(const WillmoreFlow::State& state, DiscreteCurvature&) {
-  return table_columns(state);
-}
-template <class State>
-Field columns(const State& state, DiscreteCurvature& curvature) {
-  curvature.compute(state.x);
-  Field all(state.x.rows(), 7);
-  all << state.x, curvature.nu(), curvature.H();
-  return all;
-}
-
 /// Runs the flow by backward Euler steps, about `recorded_steps` of which are recorded.
 template <class Flow>
 void run_flow(Flow&& flow, const typename Flow::State& initial, const SurfaceSpace& space,
               const Surface& surface, ErrorRecorder* errors, RunRecorder& recorder, Row& row) {
   using State = typename Flow::State;
   Timed<Flow> timed{flow};
-  DiscreteCurvature curvature(space);
   const int every = std::max(1, row.steps / recorded_steps);
   int taken = 0;
   row.status = run_to_end(
       [&] {
-        integrate(timed, {1, row.tau, row.steps, Start{}}, initial, {}, [&](int n, const State& state) {
+        integrate(timed, {1, row.tau, row.steps, Start{}}, initial, [&](int n, const State& state) {
           taken = n;
           if (n % every != 0 && n != row.steps) return;
-          recorder.record(n, state.t, state.x, point_fields(state));
+          recorder.record(n, state.t, state.x, nodal_fields(state));
           if (!errors) return;
-          errors->record(state.t, columns(state, curvature));
+          errors->record(state);
           recorder.series()["distance"].push_back(distance(surface, state.x));
         });
       },

@@ -35,7 +35,7 @@
 #include "solver/error.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/generate.hpp"
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace {
 
@@ -169,7 +169,7 @@ class Observer {
   void operator()(int n, const State& state) {
     const bool last = state.t >= run_.end_time * (1 - 1e-9);
     if (n > (run_.adaptive() ? 200 : 32) && n % 8 != 0 && !last) return;
-    recorder_.record(n, state.t, state.x, point_fields(state));
+    recorder_.record(n, state.t, state.x, nodal_fields(state));
     Series& series = recorder_.series();
     if (run_.start.limit == Case::sphere) {
       series["radius"].push_back(fitted_sphere_radius(state.x));
@@ -225,16 +225,17 @@ void describe_end(const Run& run, Row& row) {
 void integrate_run(const Run& run, const WillmoreStart& start, WillmoreFlow& flow,
                    const std::function<void(int, const State&)>& observe, Checkpoint* checkpoint, Row& row) {
   if (run.adaptive()) {
-    AdaptiveGrid grid;
+    AdaptiveSteps grid;
+    grid.controlled = "u";
     grid.end_time = run.end_time;
     grid.first_step = run.start.first_step;
     grid.largest_step = run.start.largest_step;
-    const AdaptiveRun done = integrate_adaptive(flow, grid, start.state, &State::u, observe, checkpoint);
+    const StepCount done = integrate(flow, grid, start.state, checkpoint, observe);
     row.steps = done.steps;
     row.values["rejected_steps"] = done.rejected;
   } else {
-    const TimeGrid grid{2, row.tau, row.steps, parse_start("cascade")};
-    integrate(flow, grid, start.state, {}, observe, checkpoint);
+    const UniformSteps grid{2, row.tau, row.steps, parse_start("cascade")};
+    integrate(flow, grid, start.state, checkpoint, observe);
   }
 }
 
@@ -305,7 +306,7 @@ nlohmann::json parameters(const Setting& setting, const std::string& preset) {
           {"degree", setting.degree},
           {"bdf", 2},
           {"tau", "0.2 2^-8; adaptive: the largest"},
-          {"tolerance", AdaptiveGrid().tolerance},
+          {"tolerance", AdaptiveSteps().tolerance},
           {"relaxation", relaxation},
           {"meshes", "generated; each level has half as many nodes as the one before"}};
 }

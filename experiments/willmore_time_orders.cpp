@@ -66,17 +66,17 @@ State behind_the_layer(const SurfaceSpace& space, const Surface& surface, const 
                        WillmoreFlow& flow) {
   const WillmoreStart start = willmore_start_on(space, surface, x, WillmoreFlow::Variant::willmore, false);
   State state;
-  integrate(flow, {2, 2e-4, 500, parse_start("substeps:16")}, start.state, {},
+  integrate(flow, {2, 2e-4, 500, parse_start("substeps:16")}, start.state,
             [&](int, const State& now) { state = now; });
   return state;
 }
 
 /// Largest nodal L2 norm over the steps n >= q of the difference from the solution with small steps, for each
 /// field.
-void record_errors(WillmoreFlow& flow, const SurfaceSpace& space, const State& initial, const TimeGrid& grid,
-                   Row& row) {
-  const TimeGrid small{5, time_steps.tau(reference_k), time_steps.count(reference_k),
-                       parse_start("substeps:128")};
+void record_errors(WillmoreFlow& flow, const SurfaceSpace& space, const State& initial,
+                   const UniformSteps& grid, Row& row) {
+  const UniformSteps small{5, time_steps.tau(reference_k), time_steps.count(reference_k),
+                           parse_start("substeps:128")};
   const SmallSteps reference(flow, small, initial, {}, small.steps / grid.steps);
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   reference.compare(grid.order, grid.tau, grid.order, [&](int, const State& state, const State& exact) {

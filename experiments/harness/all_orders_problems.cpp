@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "experiments/harness/mcf_columns.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/constants.hpp"
@@ -81,7 +80,6 @@ struct MeanCurvatureOnTorus {
   MeanCurvatureOnTorus(int degree, double h, double) : on(angenent_torus(), angenent_grid(h), degree) {}
   Flow flow() const { return {on.space, {}}; }
   Flow::State state(double t) const { return exact_mean_curvature_state(exact, on.mesh.nodes, t); }
-  Field columns(const Flow::State& state) const { return table_columns(state); }
 };
 
 /// The same torus by Dziuk's scheme; nu and H from kappa = M^-1 A x.
@@ -89,12 +87,10 @@ struct DziukOnTorus {
   using Flow = DziukFlow;
   InitialSurface on;
   ExactEvolution exact = shrinking_angenent_torus();
-  mutable DiscreteCurvature curvature{on.space};
 
   DziukOnTorus(int degree, double h, double) : on(angenent_torus(), angenent_grid(h), degree) {}
   Flow flow() const { return Flow(on.space); }
   Flow::State state(double t) const { return exact_dziuk_state(exact, on.mesh.nodes, t); }
-  Field columns(const Flow::State& state) const { return mcf_columns(state, curvature); }
 };
 
 struct CoupledOnSphere {
@@ -108,7 +104,6 @@ struct CoupledOnSphere {
     return {on.space, GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised), parameters, {}};
   }
   Flow::State state(double t) const { return exact_growing_sphere_state(on.space, exact, on.mesh.nodes, t); }
-  Field columns(const Flow::State& state) const { return table_columns(state); }
 };
 
 /// Cahn-Hilliard on the ellipsoid, with Ritz maps as starting values, and theta.
@@ -135,18 +130,7 @@ struct CahnHilliardOnEllipsoid {
   Flow::State state(double t) const {
     return exact_cahn_hilliard_state(on.space, manufactured, nodes.at(t), t, StartValues::ritz);
   }
-  Field columns(const Flow::State& state) const {
-    Field all(state.u.rows(), 2);
-    all << state.u, state.w;
-    return all;
-  }
 };
-
-Field willmore_columns(const WillmoreFlow::State& state) {
-  Field all(state.x.rows(), 11);
-  all << state.x, state.u.rightCols(3), state.u.col(0), state.w;
-  return all;
-}
 
 WillmoreFlow::Variant without_projections() {
   WillmoreFlow::Variant variant;
@@ -174,7 +158,6 @@ struct WillmoreOnTorus {
     state.t = t;
     return state;
   }
-  Field columns(const Flow::State& state) const { return table_columns(state); }
 
  private:
   int cells(double h) const {
@@ -198,7 +181,6 @@ struct WillmoreOnEllipsoid {
   }
   Flow flow() const { return {on.space, without_projections()}; }
   const Flow::State& state(double) const { return start.state; }
-  Field columns(const Flow::State& state) const { return willmore_columns(state); }
 };
 
 /// The norms in which the errors with tau and with 2 tau are compared.
@@ -241,21 +223,20 @@ void note_instability(Row& row, Body&& body) {
 
 template <class Problem>
 typename Problem::Flow::State end_of(const Problem& problem, typename Problem::Flow& flow,
-                                     const TimeGrid& grid) {
+                                     const UniformSteps& grid) {
   using State = typename Problem::Flow::State;
   State end;
-  integrate(
-      flow, grid, problem.state(0), [&](double t) { return problem.state(t); },
-      [&](int n, const State& state) {
-        if (n == grid.steps) end = state;
-      });
+  integrate(flow, grid, {problem.state(0), [&](double t) { return problem.state(t); }},
+            [&](int n, const State& state) {
+              if (n == grid.steps) end = state;
+            });
   return end;
 }
 
 template <class Problem>
-Errors errors_at_end(const Problem& problem, double t, const Field& columns) {
+Errors errors_at_end(const Problem& problem, const typename Problem::Flow::State& end) {
   ErrorRecorder recorder(problem.on.space, problem.exact, problem.on.mesh.nodes);
-  recorder.record(t, columns);
+  recorder.record(end);
   return recorder.maxima();
 }
 
@@ -270,15 +251,14 @@ void run_in_space(const OrderRun& run, Row& row) {
     const double t = row.steps * row.tau;
     const auto end = end_of(problem, flow, {run.bdf, row.tau, row.steps, {}});
     const auto end_of_double = end_of(problem, flow, {run.bdf, 2 * row.tau, row.steps / 2, {}});
-    const Errors errors = errors_at_end(problem, t, problem.columns(end));
-    const Errors doubled = errors_at_end(problem, t, problem.columns(end_of_double));
+    const Errors errors = errors_at_end(problem, end);
+    const Errors doubled = errors_at_end(problem, end_of_double);
     if (grows(run.flow, errors, doubled, growth_in_space)) {
       row.values["unstable"] = 1;
       return set_aside(errors, "unstable", row);
     }
     LargestDifferences differences(problem.on.space, problem.exact.quantities);
-    differences.add(problem.exact.trajectories(problem.on.mesh.nodes, t),
-                    problem.columns(end) - problem.columns(end_of_double));
+    differences.add(problem.exact.trajectories(problem.on.mesh.nodes, t), end, end_of_double);
     for (const auto& [quantity, norms] : errors) {
       for (const auto& [norm, error] : norms) {
         const std::string nodal = "nodal" + norm.substr(norm.find('_'));
@@ -298,8 +278,8 @@ void run_in_space(const OrderRun& run, Row& row) {
 template <class Problem>
 void run_in_time(const OrderRun& run, Row& row) {
   using State = typename Problem::Flow::State;
-  const TimeGrid small{run.flow.flow == "dziuk" ? 3 : 5, run.flow.time.tau(run.reference_k),
-                       run.flow.time.count(run.reference_k), parse_start("cascade")};
+  const UniformSteps small{run.flow.flow == "dziuk" ? 3 : 5, run.flow.time.tau(run.reference_k),
+                           run.flow.time.count(run.reference_k), parse_start("cascade")};
   const Problem problem(run.degree, run.flow.time_h.at(run.degree - 1), small.tau);
   describe_mesh(problem.on.mesh, row);
   typename Problem::Flow flow = problem.flow();
@@ -308,10 +288,9 @@ void run_in_time(const OrderRun& run, Row& row) {
   note_instability(row, [&] {
     const auto errors = [&](double tau) {
       LargestDifferences differences(problem.on.space, problem.exact.quantities);
-      reference.compare(run.bdf, tau, static_cast<int>(std::lround(run.flow.begin / tau)),
-                        [&](int, const State& state, const State& exact) {
-                          differences.add(exact.x, problem.columns(state) - problem.columns(exact));
-                        });
+      reference.compare(
+          run.bdf, tau, static_cast<int>(std::lround(run.flow.begin / tau)),
+          [&](int, const State& state, const State& exact) { differences.add(exact.x, state, exact); });
       return differences.errors();
     };
     const Errors doubled = errors(2 * row.tau), single = errors(row.tau);

@@ -35,14 +35,14 @@ int standard_order(const JsonReader& whole, const std::string& flow) {
 }
 
 /// Adaptive steps stand in the place of tau, steps and start.
-AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
+AdaptiveSteps adaptive_grid(const JsonReader& whole, const std::string& flow) {
   for (const char* key : {"tau", "steps", "start"}) {
     if (whole.has(key))
       throw InputError(whole.where() + ": found adaptive and " + key + "; expected one of them");
   }
   const JsonReader reader(whole.object("adaptive"), whole.where() + ": adaptive");
   reader.accept_only({"end_time", "tolerance", "first_step", "largest_step"});
-  AdaptiveGrid grid;
+  AdaptiveSteps grid;
   const int highest = flow == "bgn" ? 1 : 2;
   grid.order = whole.integer_within("bdf", std::min(highest, standard_order(whole, flow)), 1, highest);
   grid.end_time = reader.number("end_time");
@@ -57,8 +57,8 @@ AdaptiveGrid adaptive_grid(const JsonReader& whole, const std::string& flow) {
   return grid;
 }
 
-TimeGrid time_grid(const JsonReader& reader, const std::string& flow) {
-  TimeGrid grid;
+UniformSteps time_grid(const JsonReader& reader, const std::string& flow) {
+  UniformSteps grid;
   const bool one_step = flow == "bgn";
   grid.order = reader.integer_within("bdf", standard_order(reader, flow), 1, one_step ? 1 : max_bdf_order);
   grid.tau = reader.number("tau");

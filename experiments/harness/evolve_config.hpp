@@ -14,7 +14,7 @@
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/mesh.hpp"
 #include "solver/mesh/origin.hpp"
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace esfem {
 
@@ -27,12 +27,12 @@ struct EvolveConfig {
   Vec3 origin = Vec3::Zero();              ///< of the mesh's coordinates in those of its file
   Vec3 disturbance_origin = Vec3::Zero();  ///< of the waves that disturb initial values
   std::vector<std::string> mesh_remarks;   ///< what was changed or chosen when the mesh was made
-  std::vector<PointField> fields;          ///< nodal values of the mesh file; nan where it has none
+  NodalFields fields;                      ///< nodal values of the mesh file; nan where it has none
   std::vector<long> node_numbers;          ///< the file's own, of the first nodes; empty: 1, 2, ..
   MeshOrigin mesh_origin;                  ///< names elements as the mesh file does; no source: generated
-  TimeGrid grid;
-  bool start_given = false;              ///< whether grid.start comes from the file
-  std::optional<AdaptiveGrid> adaptive;  ///< instead of `grid`, where the file asks for it
+  UniformSteps grid;
+  bool start_given = false;               ///< whether grid.start comes from the file
+  std::optional<AdaptiveSteps> adaptive;  ///< instead of `grid`, where the file asks for it
   Quadrature rule;
   MeanCurvatureFlow::Variant mean_curvature;
   WillmoreFlow::Variant willmore;

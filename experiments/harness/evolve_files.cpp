@@ -56,7 +56,7 @@ void write_nodal(const EvolveConfig& config, const RunRecorder& recorder, const 
   const RunRecorder::Surface& newest = recorder.newest();
   const Field x = newest.x.rowwise() + config.origin.transpose();
   json nodal = {{"t", newest.t}, {"x", rows(x)}, {"config", config_json}, {"provenance", origin}};
-  for (const PointField& field : newest.fields) nodal[field.name] = rows(field.values);
+  for (const NodalField& field : newest.fields) nodal[field.name] = rows(field.values);
   nodal["elements"] = rows(config.mesh.elements);
   if (!config.node_numbers.empty()) nodal["node_numbers"] = config.node_numbers;
   write_file(config.nodal, nodal.dump() + "\n");

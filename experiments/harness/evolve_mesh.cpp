@@ -27,7 +27,7 @@ Mesh subdivided(const Surface& surface, int subdivisions, const std::string& whe
 void raise_degree(ReadMesh& start, int degree) {
   const Mesh given = std::move(start.mesh);
   start.mesh = lagrange_mesh(given, degree);
-  for (PointField& field : start.fields) field.values = lagrange_values(given, field.values, start.mesh);
+  for (NodalField& field : start.fields) field.values = lagrange_values(given, field.values, start.mesh);
   const Eigen::Index n = given.nodes.rows();
   if (start.mesh.nodes.rows() < n || start.mesh.nodes.topRows(n) != given.nodes) start.node_numbers.clear();
 }
@@ -80,7 +80,7 @@ void remesh_file(ReadMesh& start, const std::string& file, const FileTreatment& 
   start.origin = {};
   start.origin.source = file + ", remeshed";
   check_closed_surface(found.mesh, start.origin.source);
-  for (PointField& field : start.fields) field.values = values_at(found.on_input, flat, field.values);
+  for (NodalField& field : start.fields) field.values = values_at(found.on_input, flat, field.values);
   start.node_numbers.clear();
   const MeshQuality before = mesh_quality(flat.elements, flat.nodes),
                     after = mesh_quality(found.mesh.elements, found.mesh.nodes);

@@ -27,9 +27,9 @@ std::vector<Names> possible_starts(const EvolveConfig& config) {
   return {};
 }
 
-const PointField* field_named(const EvolveConfig& config, const std::string& name) {
+const NodalField* field_named(const EvolveConfig& config, const std::string& name) {
   const auto found = std::find_if(config.fields.begin(), config.fields.end(),
-                                  [&](const PointField& field) { return field.name == name; });
+                                  [&](const NodalField& field) { return field.name == name; });
   return found == config.fields.end() ? nullptr : &*found;
 }
 
@@ -44,7 +44,7 @@ std::string node_named(const EvolveConfig& config, int i) {
   return format("node %d (counted from 1)", i + 1);
 }
 
-void check_values(const EvolveConfig& config, const PointField& field) {
+void check_values(const EvolveConfig& config, const NodalField& field) {
   const bool is_vector = field.name == "nu" || field.name == "z" || field.name == "v";
   if (field.values.cols() != (is_vector ? 3 : 1))
     throw InputError(format("mesh: %s of the file has %d components, %d expected", field.name.c_str(),
@@ -84,7 +84,7 @@ Field start_values(const EvolveConfig& config, const Names& names) {
     return {};
   Field values(config.mesh.nodes.rows(), 0);
   for (const std::string& name : names) {
-    const PointField& field = *field_named(config, name);
+    const NodalField& field = *field_named(config, name);
     check_values(config, field);
     if (name == "nu") check_normals(config, field.values);
     Field both(values.rows(), values.cols() + field.values.cols());
@@ -126,7 +126,7 @@ std::optional<CoupledDiffusionState> tumour_in_file(const EvolveConfig& config, 
 
 std::string start_remark(const EvolveConfig& config) {
   std::map<std::string, bool> used;
-  for (const PointField& field : config.fields) used[field.name] = false;
+  for (const NodalField& field : config.fields) used[field.name] = false;
   for (const Names& names : possible_starts(config))
     if (has_all(config, names))
       for (const std::string& name : names) used[name] = true;

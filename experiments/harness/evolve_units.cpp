@@ -27,7 +27,7 @@ void scale_defaults(const JsonReader& reader, EvolveConfig& config) {
   if (is_default("parameters", "delta")) coupled.kinetics.delta /= L;
   if (is_default("parameters", "epsilon")) config.cahn_hilliard.epsilon *= L;
   if (!config.adaptive) return;
-  AdaptiveGrid& grid = *config.adaptive;
+  AdaptiveSteps& grid = *config.adaptive;
   if (is_default("adaptive", "first_step")) {
     const bool fourth_order = config.flow == "willmore" || config.flow == "surface_diffusion";
     const int power = fourth_order ? 4 : config.flow == "cahn_hilliard" ? 3 : 2;
@@ -36,7 +36,7 @@ void scale_defaults(const JsonReader& reader, EvolveConfig& config) {
       grid.first_step = std::clamp(grid.first_step, 1e-12 * grid.end_time, 0.1 * grid.end_time);
     if (grid.largest_step > 0) grid.first_step = std::min(grid.first_step, grid.largest_step);
   }
-  check_adaptive_grid(grid);
+  check_steps(grid);
 }
 
 }  // namespace esfem

@@ -94,13 +94,13 @@ void run_stationary_willmore(const SurfaceSpace& space, const Mesh& mesh, const 
   VelocityErrors velocity_errors(space, start.state);
   State last;
   const auto record = [&](int, const State& state) {
-    errors.record(state.t, table_columns(state));
+    errors.record(state);
     velocity_errors.record(state);
     if (observe) observe(state);
     last = state;
   };
   try {
-    integrate(flow, setting.grid, exact_state(0), exact_state, record);
+    integrate(flow, setting.grid, {exact_state(0), exact_state}, record);
   } catch (const SingularityError& singularity) {
     row.status = singularity.what();
   }

@@ -16,7 +16,7 @@ namespace esfem {
 struct StationaryWillmore {
   WillmoreFlow::Variant variant;
   bool theta = false;  ///< with the correction (3.7)
-  TimeGrid grid;
+  UniformSteps grid;
 };
 
 using WillmoreObserver = std::function<void(const WillmoreFlow::State&)>;

@@ -14,9 +14,9 @@ struct Timed {
   Flow& flow;
   double seconds = 0;
 
-  void step(const History<State>& history, int q, double tau, State& next) {
+  void step(const BdfStep<State>& step, State& next) {
     const std::clock_t start = std::clock();
-    flow.step(history, q, tau, next);
+    flow.step(step, next);
     seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   }
 };

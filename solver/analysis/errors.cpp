@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/analysis/errors.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/assembly/lifted_points.hpp"
 
@@ -47,32 +49,51 @@ SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const
   return norms;
 }
 
-ErrorRecorder::ErrorRecorder(const SurfaceSpace& space, const ExactEvolution& exact, Field x0)
-    : space_(space), exact_(exact), x0_(std::move(x0)), M_(space.matrix()), A_(space.matrix()) {}
-
-void ErrorRecorder::record(double t, const Field& w) {
-  const Field x_star = exact_.trajectories(x0_, t);
-  space_.assemble(x_star, M_, A_);
-  series_["t"].push_back(t);
-  add("nodal", nodal_norms(M_, A_, w - exact_.nodal_values(x_star, t)));
-  add("lifted", lifted_errors(space_, x_star, exact_, t, w));
-}
-
-void ErrorRecorder::add(const std::string& kind, const SquaredNorms& norms) {
+void raise_maxima(const Quantities& quantities, const std::string& kind, const SquaredNorms& norms,
+                  Errors& maxima,
+                  const std::function<void(const std::string&, const std::string&, double)>& each) {
   int column = 0;
-  for (const auto& [quantity, components] : exact_.quantities) {
+  for (const auto& [quantity, components] : quantities) {
     // Round-off can make a vanishing eᵀAe negative.
     const double L2 = std::max(0.0, norms.L2.segment(column, components).sum());
     const double H1_semi = std::max(0.0, norms.H1_semi.segment(column, components).sum());
     const std::pair<const char*, double> values[] = {
         {"_L2", std::sqrt(L2)}, {"_H1", std::sqrt(L2 + H1_semi)}, {"_H1_semi", std::sqrt(H1_semi)}};
-    for (const auto& [norm, error] : values) {
-      double& maximum = maxima_[quantity][kind + norm];
-      maximum = std::max(maximum, error);
-      series_[quantity + "_" + kind + norm].push_back(error);
+    for (const auto& [norm, value] : values) {
+      double& maximum = maxima[quantity][kind + norm];
+      maximum = std::max(maximum, value);
+      if (each) each(quantity, kind + norm, value);
     }
     column += components;
   }
+}
+
+ErrorRecorder::ErrorRecorder(const SurfaceSpace& space, const ExactEvolution& exact, Field x0)
+    : space_(space),
+      exact_(exact),
+      x0_(std::move(x0)),
+      quantities_(space, exact.quantities),
+      M_(space.matrix()),
+      A_(space.matrix()) {}
+
+void ErrorRecorder::record(double t, const Field& w) {
+  const Field x_star = exact_.trajectories(x0_, t);
+  space_.assemble(x_star, M_, A_);
+  series_["t"].push_back(t);
+  const auto note = [&](const std::string& quantity, const std::string& norm, double error) {
+    series_[quantity + "_" + norm].push_back(error);
+  };
+  raise_maxima(quantities_, "nodal", nodal_norms(M_, A_, w - exact_.nodal_values(x_star, t)), maxima_, note);
+  raise_maxima(quantities_, "lifted", lifted_errors(space_, x_star, exact_, t, w), maxima_, note);
+}
+
+LargestDifferences::LargestDifferences(const SurfaceSpace& space,
+                                       std::vector<ExactEvolution::Quantity> quantities)
+    : space_(space), quantities_(space, std::move(quantities)), M_(space.matrix()), A_(space.matrix()) {}
+
+void LargestDifferences::add(const Field& x, const Field& difference) {
+  space_.assemble(x, M_, A_);
+  raise_maxima(quantities_, "nodal", nodal_norms(M_, A_, difference), errors_);
 }
 
 }  // namespace esfem

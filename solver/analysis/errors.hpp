@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "solver/analysis/quantities.hpp"
 #include "solver/analysis/table.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/exact_evolution.hpp"
@@ -23,13 +29,29 @@ SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, con
 SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
                            double t, const Field& w);
 
+/// Raises the maxima of nodal_L2, nodal_H1 and nodal_H1_semi (kind "nodal"; or "lifted") of each quantity to
+/// these norms, and tells each(quantity, norm, value).
+void raise_maxima(const Quantities& quantities, const std::string& kind, const SquaredNorms& norms,
+                  Errors& maxima,
+                  const std::function<void(const std::string&, const std::string&, double)>& each = {});
+
 /// Collects the errors of a run: per step as series "x_nodal_L2", .., and their maxima over time (the norms
-/// L^infinity(L2), L^infinity(H1)). H1 is the full norm sqrt(L2² + seminorm²), per time.
+/// L^infinity(L2), L^infinity(H1)). H1 is the full norm sqrt(L2² + seminorm²), per time. An observer of
+/// integrate.
 class ErrorRecorder {
  public:
   /// x0: the exact initial nodes. Space and exact solution must outlive the recorder.
   ErrorRecorder(const SurfaceSpace& space, const ExactEvolution& exact, Field x0);
 
+  /// The errors of a state whose nodal fields have the names of the exact solution's quantities (Quantities).
+  template <class State>
+  void record(const State& state) {
+    record(state.t, quantities_.of(state));
+  }
+  template <class State>
+  void operator()(int, const State& state) {
+    record(state);
+  }
   /// w: the numerical components at time t, N x exact.components(), in the order of exact.quantities.
   void record(double t, const Field& w);
 
@@ -37,14 +59,37 @@ class ErrorRecorder {
   const std::map<std::string, std::vector<double>>& series() const { return series_; }
 
  private:
-  void add(const std::string& kind, const SquaredNorms& norms);
-
   const SurfaceSpace& space_;
   const ExactEvolution& exact_;
   Field x0_;
+  Quantities quantities_;
   SymmetricMatrix M_, A_;
   Errors maxima_;
   std::map<std::string, std::vector<double>> series_;
+};
+
+/// The largest nodal norms, over the steps of a run, of differences of two states.
+class LargestDifferences {
+ public:
+  /// The space must outlive this.
+  LargestDifferences(const SurfaceSpace& space, std::vector<ExactEvolution::Quantity> quantities);
+
+  /// Norms on Gamma_h[x] of a - b.
+  template <class State>
+  void add(const Field& x, const State& a, const State& b) {
+    add(x, quantities_.of(a) - quantities_.of(b));
+  }
+  /// difference: N x all components.
+  void add(const Field& x, const Field& difference);
+
+  /// nodal_L2, nodal_H1 and nodal_H1_semi of each quantity.
+  const Errors& errors() const { return errors_; }
+
+ private:
+  const SurfaceSpace& space_;
+  Quantities quantities_;
+  SymmetricMatrix M_, A_;
+  Errors errors_;
 };
 
 }  // namespace esfem

@@ -8,16 +8,6 @@
 
 namespace esfem {
 
-namespace {
-
-const Field* find(const std::vector<PointField>& fields, const std::string& name) {
-  for (const PointField& field : fields)
-    if (field.name == name) return &field.values;
-  return nullptr;
-}
-
-}  // namespace
-
 RunRecorder::RunRecorder(const SurfaceSpace& space, SnapshotPlan plan, Energies energies)
     : space_(space), plan_(std::move(plan)), energies_(energies), curvature_(space) {
   for (std::size_t i = 1; i < plan_.times.size(); ++i)
@@ -27,7 +17,7 @@ RunRecorder::RunRecorder(const SurfaceSpace& space, SnapshotPlan plan, Energies 
   if (!plan_.pvd.empty()) collection_.emplace(plan_.pvd, space.degree(), space.elements(), plan_.run);
 }
 
-void RunRecorder::record(int n, double t, const Field& x, std::vector<PointField> fields) {
+void RunRecorder::record(int n, double t, const Field& x, NodalFields fields) {
   Series step;
   record_geometry(space_, t, x, step);
   const Field* nu = find(fields, "nu");
@@ -58,7 +48,7 @@ bool RunRecorder::pass_times(double t) {
 }
 
 void RunRecorder::write_newest() {
-  std::vector<PointField> fields = newest_.fields;
+  NodalFields fields = newest_.fields;
   if (!find(fields, "nu")) fields.push_back({"nu", curvature_.nu()});
   if (!find(fields, "H")) fields.push_back({"H", curvature_.H()});
   fields.push_back({"kappa", curvature_.kappa()});
@@ -95,7 +85,7 @@ nlohmann::json RunRecorder::progress() const {
   for (const Snapshot& snapshot : snapshots_)
     snapshots.push_back({{"t", snapshot.t}, {"file", snapshot.file}});
   if (collection_) collections[plan_.pvd] = std::move(snapshots);
-  for (const PointField& field : newest_.fields)
+  for (const NodalField& field : newest_.fields)
     fields.push_back({{"name", field.name}, {"values", packed(field.values)}});
   return {
       {"series", series_},

@@ -31,7 +31,7 @@ class RunRecorder {
     int step = 0;
     double t = 0;
     Field x;
-    std::vector<PointField> fields;
+    NodalFields fields;
   };
 
   /// Whether the series have kappa_energy, which costs a factorisation a step.
@@ -45,7 +45,7 @@ class RunRecorder {
   /// discrete surface (the H of BGN's scheme is a mean over the step); min_nu and max_nu of a flow's own nu;
   /// kappa_energy, 1/2 int |kappa|² of the discrete surface, which a flow's own H can drift away from.
   /// Snapshots have kappa of the discrete surface, too, and its nu and H where the flow has none.
-  void record(int n, double t, const Field& x, std::vector<PointField> fields);
+  void record(int n, double t, const Field& x, NodalFields fields);
 
   /// What a flow's own nu and H say of the newest surface, and what the surface says of itself.
   struct CurvatureComparison {

@@ -12,12 +12,13 @@ BgnFlow::BgnFlow(const SurfaceSpace& space, const RegularityLimits& limits)
       tau_M_(space.matrix()),
       zero_(Field::Zero(space.dofs(), 1)) {}
 
-void BgnFlow::step(const History<State>& history, int q, double tau, State& next) {
-  if (q != 1) {
-    throw InputError(
-        format("BDF order %d: expected 1, the order of the scheme of Barrett, Garcke and Nürnberg", q));
+void BgnFlow::step(const BdfStep<State>& step, State& next) {
+  if (step.order != 1) {
+    throw InputError(format(
+        "BDF order %d: expected 1, the order of the scheme of Barrett, Garcke and Nürnberg", step.order));
   }
-  const Field& x = history.back(0).x;
+  const double tau = step.tau;
+  const Field& x = step.past(0).x;
   system_.assemble(space_, x);
   tau_M_.values = tau * system_.M().values;
   system_.solve(tau_M_, zero_, x, next.H, next.v);
@@ -32,7 +33,7 @@ BgnFlow::State bgn_state_on(const SurfaceSpace& space, const Field& x) {
   return {0, x, -curvature.kappa(), curvature.H()};
 }
 
-std::vector<PointField> point_fields(const BgnFlow::State& state) {
+NodalFields nodal_fields(const BgnFlow::State& state) {
   return {{"v", state.v}, {"H", state.H}};
 }
 

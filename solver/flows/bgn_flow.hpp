@@ -3,7 +3,7 @@
 
 #include "solver/flows/bgn_system.hpp"
 #include "solver/flows/regularity.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -30,7 +30,7 @@ class BgnFlow {
 
   /// One step; q must be 1 (InputError), the scheme is of first order. Throws SingularityError where the
   /// surface is singular or no longer resolved (regularity.hpp).
-  void step(const History<State>& history, int q, double tau, State& next);
+  void step(const BdfStep<State>& step, State& next);
 
  private:
   const SurfaceSpace& space_;
@@ -45,6 +45,6 @@ class BgnFlow {
 BgnFlow::State bgn_state_on(const SurfaceSpace& space, const Field& x);
 
 /// The flow's own nodal fields beside x: v, H.
-std::vector<PointField> point_fields(const BgnFlow::State& state);
+NodalFields nodal_fields(const BgnFlow::State& state);
 
 }  // namespace esfem

@@ -41,12 +41,13 @@ void WeakWeingarten::assemble_Q(const Field& x, const Field& H, Field& out) {
 BgnWillmoreFlow::BgnWillmoreFlow(const SurfaceSpace& space)
     : space_(space), system_(space), weingarten_(space), tau_A_(space.matrix()) {}
 
-void BgnWillmoreFlow::step(const History<State>& history, int q, double tau, State& next) {
-  if (q != 1) {
-    throw InputError(
-        format("BDF order %d: expected 1, the order of the scheme of Barrett, Garcke and Nürnberg", q));
+void BgnWillmoreFlow::step(const BdfStep<State>& step, State& next) {
+  if (step.order != 1) {
+    throw InputError(format(
+        "BDF order %d: expected 1, the order of the scheme of Barrett, Garcke and Nürnberg", step.order));
   }
-  const State& old = history.back(0);
+  const double tau = step.tau;
+  const State& old = step.past(0);
   system_.assemble(space_, old.x);
   weingarten_.compute(old.x, old.H, system_.M());
   weingarten_.assemble_Q(old.x, old.H, tau_Q_);
@@ -74,7 +75,7 @@ BgnWillmoreFlow::State bgn_willmore_state_on(const SurfaceSpace& space, const Fi
   return {0, x, V.col(0).asDiagonal() * curvature.nu(), curvature.H()};
 }
 
-std::vector<PointField> point_fields(const BgnWillmoreFlow::State& state) {
+NodalFields nodal_fields(const BgnWillmoreFlow::State& state) {
   return {{"v", state.v}, {"H", state.H}};
 }
 

@@ -3,7 +3,7 @@
 
 #include "solver/flows/bgn_system.hpp"
 #include "solver/linalg/spd_solver.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -56,7 +56,7 @@ class BgnWillmoreFlow {
 
   /// One step; q must be 1 (InputError), the scheme is of first order. Throws SingularityError where the
   /// surface is singular or no longer resolved (regularity.hpp).
-  void step(const History<State>& history, int q, double tau, State& next);
+  void step(const BdfStep<State>& step, State& next);
 
  private:
   const SurfaceSpace& space_;
@@ -71,6 +71,6 @@ class BgnWillmoreFlow {
 BgnWillmoreFlow::State bgn_willmore_state_on(const SurfaceSpace& space, const Field& x);
 
 /// The flow's own nodal fields beside x: v, H.
-std::vector<PointField> point_fields(const BgnWillmoreFlow::State& state);
+NodalFields nodal_fields(const BgnWillmoreFlow::State& state);
 
 }  // namespace esfem

@@ -24,10 +24,10 @@ CahnHilliardScheme::CahnHilliardScheme(const SurfaceSpace& space, NodalMotion mo
     throw InputError(format("epsilon: found %g, expected a positive number", epsilon));
 }
 
-void CahnHilliardScheme::prepare(const History<State>& history, int q, State& next) {
+void CahnHilliardScheme::prepare(const BdfStep<State>& step, State& next) {
   next.x = motion_(next.t);
   assemble_regular(space_, next.x, M_, A_);
-  history.extrapolate(q, &State::u, u_tilde_);
+  step.extrapolate(&State::u, u_tilde_);
 }
 
 void CahnHilliardScheme::add_advection(const State& at, Field& load_of_u) {
@@ -42,11 +42,11 @@ void CahnHilliardScheme::add_advection(const State& at, Field& load_of_u) {
   load_of_u += advection_;
 }
 
-void CahnHilliardScheme::advance(const History<State>& history, int q, double tau, const Field& loads,
-                                 const Field& b, State& next) {
+void CahnHilliardScheme::advance(const BdfStep<State>& step, const Field& loads, const Field& b,
+                                 State& next) {
   // The block solver's second unknown is -w.
-  history.bdf_sum(q, &State::Mu, Mu_sum_);
-  next.u = loads.col(0) - Mu_sum_ / tau;
+  step.known_sum(&State::Mu, Mu_sum_);
+  next.u = loads.col(0) - Mu_sum_ / step.tau;
   if (b.size() > 0) {
     M_.multiply(b, Mb_);
     next.u += Mb_;
@@ -54,7 +54,7 @@ void CahnHilliardScheme::advance(const History<State>& history, int q, double ta
   if (tangential_) add_advection(next, next.u);
   next.w = loads.col(1) / -epsilon_;
   if (theta_.size() > 0) next.w -= theta_;
-  block_.factorise(history.delta(q)[0] / tau, 1.0, epsilon_, M_, A_);
+  block_.factorise(step.delta[0] / step.tau, 1.0, epsilon_, M_, A_);
   block_.solve(next.u, next.w);
   next.w *= -1.0;
   M_.multiply(next.u, next.Mu);
@@ -112,7 +112,7 @@ double ginzburg_landau_energy(const SurfaceSpace& space, const Field& x, const F
   return load.sum();  // the shape functions sum to 1
 }
 
-std::vector<PointField> point_fields(const CahnHilliardState& state) {
+NodalFields nodal_fields(const CahnHilliardState& state) {
   return {{"u", state.u}, {"w", state.w}};
 }
 

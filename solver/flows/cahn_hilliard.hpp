@@ -8,7 +8,7 @@
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/prescribed_motion.hpp"
 #include "solver/linalg/block_solver.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -47,13 +47,12 @@ class CahnHilliardScheme {
 
   /// next.x at next.t, M and A there, and the extrapolated u~. Throws SingularityError where elements are
   /// degenerate.
-  void prepare(const History<State>& history, int q, State& next);
+  void prepare(const BdfStep<State>& step, State& next);
   const Field& u_tilde() const { return u_tilde_; }
 
   /// After prepare: solves for u and w. loads: N x 2, f(u~) and g(u~); b: nodal values at next.t, N x 1
   /// (none: empty).
-  void advance(const History<State>& history, int q, double tau, const Field& loads, const Field& b,
-               State& next);
+  void advance(const BdfStep<State>& step, const Field& loads, const Field& b, State& next);
 
  private:
   void add_advection(const State& at, Field& load_of_u);
@@ -92,15 +91,15 @@ class CahnHilliard {
 
   /// One step with BDF of order q: fills all fields of next. Throws SingularityError where elements have
   /// degenerated.
-  void step(const History<State>& history, int q, double tau, State& next) {
-    scheme_.prepare(history, q, next);
+  void step(const BdfStep<State>& step, State& next) {
+    scheme_.prepare(step, next);
     const auto f_and_g = [&](const PointData<1>& p, Integrand<2, 0>& load) {
       load.value[0] = problem_.f(next.t, p);
       load.value[1] = problem_.g(next.t, p);
     };
     space_.assemble_load<1, 2, 0>(next.x, scheme_.u_tilde(), f_and_g, loads_);
     problem_.b(next.t, next.x, b_);
-    scheme_.advance(history, q, tau, loads_, b_, next);
+    scheme_.advance(step, loads_, b_, next);
   }
 
  private:
@@ -158,6 +157,6 @@ CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, d
 double ginzburg_landau_energy(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon);
 
 /// The flow's own nodal fields beside x: u, w.
-std::vector<PointField> point_fields(const CahnHilliardState& state);
+NodalFields nodal_fields(const CahnHilliardState& state);
 
 }  // namespace esfem

@@ -49,20 +49,19 @@ CoupledDiffusionScheme::CoupledDiffusionScheme(const SurfaceSpace& space, int sp
   for (EqualDiffusion& group : groups_) group.u.resize(space.dofs(), group.species.size());
 }
 
-void CoupledDiffusionScheme::extrapolate(const History<State>& history, int q) {
-  history.extrapolate(q, &State::x, x_tilde_);
-  history.extrapolate(q, &State::u, u_tilde_);
+void CoupledDiffusionScheme::extrapolate(const BdfStep<State>& step) {
+  step.extrapolate(&State::x, x_tilde_);
+  step.extrapolate(&State::u, u_tilde_);
   assemble_regular(space_, x_tilde_, M_, A_);
 }
 
-void CoupledDiffusionScheme::advance(const History<State>& history, int q, double tau, const Field& loads,
-                                     State& next) {
-  diffuse(history, q, tau, loads, next.u);
-  require_bounded_u(tau, next.u);
+void CoupledDiffusionScheme::advance(const BdfStep<State>& step, const Field& loads, State& next) {
+  diffuse(step, loads, next.u);
+  require_bounded_u(step.tau, next.u);
   if (variant_.law == CoupledDiffusionVariant::regularised)
-    move_regularised(history, q, tau, loads, next);
+    move_regularised(step, loads, next);
   else
-    move_dynamic(history, q, tau, loads, next);
+    move_dynamic(step, loads, next);
   require_regular(space_, next.x, limits_);
 
   if (variant_.mass == CoupledDiffusionVariant::reassembled) space_.assemble(next.x, M_, A_);
@@ -82,13 +81,12 @@ void CoupledDiffusionScheme::require_bounded_u(double tau, const Field& u) const
 }
 
 // (2.19): (delta_0/tau M(x̃) + D_l A(x̃)) u_l = f_l(x̃, ũ) - 1/tau sum_{j>=1} delta_j (M u_l)^{n-j}
-void CoupledDiffusionScheme::diffuse(const History<State>& history, int q, double tau, const Field& loads,
-                                     Field& u) {
-  history.bdf_sum(q, &State::Mu, Mu_sum_);
-  u = loads.leftCols(u.cols()) - Mu_sum_ / tau;
+void CoupledDiffusionScheme::diffuse(const BdfStep<State>& step, const Field& loads, Field& u) {
+  step.known_sum(&State::Mu, Mu_sum_);
+  u = loads.leftCols(u.cols()) - Mu_sum_ / step.tau;
   for (EqualDiffusion& group : groups_) {
     for (std::size_t c = 0; c < group.species.size(); ++c) group.u.col(c) = u.col(group.species[c]);
-    spd_.factorise(history.delta(q)[0] / tau, M_, group.D, A_);
+    spd_.factorise(step.delta[0] / step.tau, M_, group.D, A_);
     spd_.solve(group.u);
     for (std::size_t c = 0; c < group.species.size(); ++c) u.col(group.species[c]) = group.u.col(c);
   }
@@ -96,10 +94,9 @@ void CoupledDiffusionScheme::diffuse(const History<State>& history, int q, doubl
 
 // (2.20) with x from (2.21):
 //   (M(x̃) + (alpha + beta tau/delta_0) A(x̃)) v = g(x̃, ũ) + beta/delta_0 A(x̃) sum_{j>=1} delta_j x^{n-j}
-void CoupledDiffusionScheme::move_regularised(const History<State>& history, int q, double tau,
-                                              const Field& loads, State& next) {
-  const double delta_0 = history.delta(q)[0], beta = parameters_.beta / delta_0;
-  history.bdf_sum(q, &State::x, x_sum_);
+void CoupledDiffusionScheme::move_regularised(const BdfStep<State>& step, const Field& loads, State& next) {
+  const double tau = step.tau, delta_0 = step.delta[0], beta = parameters_.beta / delta_0;
+  step.known_sum(&State::x, x_sum_);
   A_.multiply(x_sum_, A_x_sum_);
   next.v = loads.rightCols(3) + beta * A_x_sum_;
   spd_.factorise(1.0, M_, parameters_.alpha + beta * tau, A_);
@@ -108,14 +105,13 @@ void CoupledDiffusionScheme::move_regularised(const History<State>& history, int
 }
 
 // (delta_0/tau M(x̃) + alpha A(x̃)) v = g(x̃, ũ) - 1/tau sum_{j>=1} delta_j (M v)^{n-j}, and (2.21)
-void CoupledDiffusionScheme::move_dynamic(const History<State>& history, int q, double tau,
-                                          const Field& loads, State& next) {
-  const double delta_0 = history.delta(q)[0];
-  history.bdf_sum(q, &State::Mv, Mv_sum_);
+void CoupledDiffusionScheme::move_dynamic(const BdfStep<State>& step, const Field& loads, State& next) {
+  const double tau = step.tau, delta_0 = step.delta[0];
+  step.known_sum(&State::Mv, Mv_sum_);
   next.v = loads.rightCols(3) - Mv_sum_ / tau;
   spd_.factorise(delta_0 / tau, M_, parameters_.alpha, A_);
   spd_.solve(next.v);
-  history.bdf_sum(q, &State::x, x_sum_);
+  step.known_sum(&State::x, x_sum_);
   next.x = (tau * next.v - x_sum_) / delta_0;
 }
 
@@ -137,20 +133,14 @@ CoupledDiffusionState coupled_diffusion_state(const SurfaceSpace& space, double 
   return state;
 }
 
-std::vector<PointField> point_fields(const CoupledDiffusionState& state) {
-  std::vector<PointField> fields = {{"v", state.v}};
+NodalFields nodal_fields(const CoupledDiffusionState& state) {
+  NodalFields fields = {{"v", state.v}};
   if (state.u.cols() == 1) {
     fields.push_back({"u", state.u});
   } else {
     for (int l = 0; l < state.u.cols(); ++l) fields.push_back({"u" + std::to_string(l + 1), state.u.col(l)});
   }
   return fields;
-}
-
-Field table_columns(const CoupledDiffusionState& state) {
-  Field columns(state.x.rows(), 6 + state.u.cols());
-  columns << state.x, state.v, state.u;
-  return columns;
 }
 
 }  // namespace esfem

@@ -6,7 +6,7 @@
 
 #include "solver/flows/regularity.hpp"
 #include "solver/linalg/spd_solver.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -51,14 +51,14 @@ class CoupledDiffusionScheme {
                          CoupledDiffusionVariant variant, const RegularityLimits& limits);
 
   /// (2.18) for x and u, and M(x̃), A(x̃). Throws SingularityError where Gamma_h[x̃] is degenerate.
-  void extrapolate(const History<State>& history, int q);
+  void extrapolate(const BdfStep<State>& step);
   const Field& x_tilde() const { return x_tilde_; }
   const Field& u_tilde() const { return u_tilde_; }
 
   /// After extrapolate: solves (2.19)-(2.21) for all fields of next. loads: N x (m + 3), f(x̃, ũ) and g(x̃,
   /// ũ). Throws SingularityError where u grows without bound, or elements of Gamma_h[x] have degenerated
   /// (regularity.hpp).
-  void advance(const History<State>& history, int q, double tau, const Field& loads, State& next);
+  void advance(const BdfStep<State>& step, const Field& loads, State& next);
 
  private:
   /// Species of one diffusion coefficient, which share a factorisation and a solve.
@@ -69,9 +69,9 @@ class CoupledDiffusionScheme {
   };
 
   void require_bounded_u(double tau, const Field& u) const;
-  void diffuse(const History<State>& history, int q, double tau, const Field& loads, Field& u);
-  void move_regularised(const History<State>& history, int q, double tau, const Field& loads, State& next);
-  void move_dynamic(const History<State>& history, int q, double tau, const Field& loads, State& next);
+  void diffuse(const BdfStep<State>& step, const Field& loads, Field& u);
+  void move_regularised(const BdfStep<State>& step, const Field& loads, State& next);
+  void move_dynamic(const BdfStep<State>& step, const Field& loads, State& next);
 
   const SurfaceSpace& space_;
   CoupledDiffusionParameters parameters_;
@@ -112,8 +112,8 @@ class CoupledDiffusion {
 
   /// One step with BDF of order q: fills all fields of next. Throws SingularityError where u grows without
   /// bound, or the surface has degenerated.
-  void step(const History<State>& history, int q, double tau, State& next) {
-    scheme_.extrapolate(history, q);
+  void step(const BdfStep<State>& step, State& next) {
+    scheme_.extrapolate(step);
     const auto f_and_g = [&](const PointData<species>& p, Integrand<species + 3, 0>& load) {
       Pack f[species];
       problem_.f(next.t, p, f);
@@ -122,7 +122,7 @@ class CoupledDiffusion {
       for (int i = 0; i < 3; ++i) load.value[species + i] = g * p.normal[i];
     };
     space_.assemble_load<species, species + 3, 0>(scheme_.x_tilde(), scheme_.u_tilde(), f_and_g, loads_);
-    scheme_.advance(history, q, tau, loads_, next);
+    scheme_.advance(step, loads_, next);
   }
 
  private:
@@ -139,9 +139,6 @@ class CoupledDiffusion {
 CoupledDiffusionState coupled_diffusion_state(const SurfaceSpace& space, double t, Field x, Field v, Field u);
 
 /// The flow's own nodal fields beside x: v, and u or, for several species, u1, u2, ...
-std::vector<PointField> point_fields(const CoupledDiffusionState& state);
-
-/// x, v, u side by side (N x (6 + m)), the columns of the error tables.
-Field table_columns(const CoupledDiffusionState& state);
+NodalFields nodal_fields(const CoupledDiffusionState& state);
 
 }  // namespace esfem

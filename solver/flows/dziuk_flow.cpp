@@ -9,15 +9,15 @@ namespace esfem {
 DziukFlow::DziukFlow(const SurfaceSpace& space, const RegularityLimits& limits)
     : space_(space), limits_(limits), M_(space.matrix()), A_(space.matrix()), spd_(space.pattern()) {}
 
-void DziukFlow::step(const History<State>& history, int q, double tau, State& next) {
-  const double delta_0 = history.delta(q)[0];
+void DziukFlow::step(const BdfStep<State>& step, State& next) {
+  const double tau = step.tau, delta_0 = step.delta[0];
 
   // (5.2)
-  history.extrapolate(q, &State::x, x_tilde_);
+  step.extrapolate(&State::x, x_tilde_);
   assemble_regular(space_, x_tilde_, M_, A_);
 
   // (3.6) with BDF: (delta_0/tau M(x̃) + A(x̃)) x = -M(x̃) 1/tau sum_{j>=1} delta_j x^{n-j}
-  history.bdf_sum(q, &State::x, sum_);
+  step.known_sum(&State::x, sum_);
   M_.multiply(sum_, next.x);
   next.x /= -tau;
   spd_.factorise(delta_0 / tau, M_, 1.0, A_);
@@ -42,7 +42,7 @@ DziukFlow::State exact_dziuk_state(const ExactEvolution& exact, const Field& x0,
   return {t, x, exact.nodal_values(x, t).middleCols(exact.column("v"), 3)};
 }
 
-std::vector<PointField> point_fields(const DziukFlow::State& state) {
+NodalFields nodal_fields(const DziukFlow::State& state) {
   return {{"v", state.v}};
 }
 

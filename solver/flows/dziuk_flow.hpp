@@ -7,7 +7,7 @@
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/regularity.hpp"
 #include "solver/linalg/spd_solver.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -39,7 +39,7 @@ class DziukFlow {
 
   /// One step with BDF of order q: fills next.x and next.v. Throws SingularityError where the surface is
   /// singular or no longer resolved (regularity.hpp).
-  void step(const History<State>& history, int q, double tau, State& next);
+  void step(const BdfStep<State>& step, State& next);
 
  private:
   const SurfaceSpace& space_;
@@ -59,6 +59,6 @@ DziukFlow::State dziuk_state_on(const SurfaceSpace& space, const Field& x);
 DziukFlow::State exact_dziuk_state(const ExactEvolution& exact, const Field& x0, double t);
 
 /// The flow's own nodal fields beside x: v.
-std::vector<PointField> point_fields(const DziukFlow::State& state);
+NodalFields nodal_fields(const DziukFlow::State& state);
 
 }  // namespace esfem

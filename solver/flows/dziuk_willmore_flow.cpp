@@ -175,11 +175,13 @@ DziukWillmoreFlow::DziukWillmoreFlow(const SurfaceSpace& space, Curvature curvat
 DziukWillmoreFlow::~DziukWillmoreFlow() = default;
 DziukWillmoreFlow::DziukWillmoreFlow(DziukWillmoreFlow&&) = default;
 
-void DziukWillmoreFlow::step(const History<State>& history, int q, double tau, State& next) {
-  if (q != 1) {
-    throw InputError(format("BDF order %d: expected 1, the order of Dziuk's scheme for Willmore flow", q));
+void DziukWillmoreFlow::step(const BdfStep<State>& step, State& next) {
+  if (step.order != 1) {
+    throw InputError(
+        format("BDF order %d: expected 1, the order of Dziuk's scheme for Willmore flow", step.order));
   }
-  const State& old = history.back(0);
+  const double tau = step.tau;
+  const State& old = step.past(0);
   System& system = *system_;
   system.assemble(space_, old.x, old.w);
   system.factorise(tau);
@@ -225,7 +227,7 @@ DziukWillmoreFlow::State dziuk_willmore_state_on(const SurfaceSpace& space, cons
   return state;
 }
 
-std::vector<PointField> point_fields(const DziukWillmoreFlow::State& state) {
+NodalFields nodal_fields(const DziukWillmoreFlow::State& state) {
   return {{"v", state.v}, {"w", state.w}};
 }
 

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "solver/assembly/surface_space.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -46,7 +46,7 @@ class DziukWillmoreFlow {
 
   /// One step; q must be 1 (InputError), the scheme is of first order. Throws SingularityError where the
   /// surface is singular or no longer resolved (regularity.hpp).
-  void step(const History<State>& history, int q, double tau, State& next);
+  void step(const BdfStep<State>& step, State& next);
 
  private:
   struct System;
@@ -62,6 +62,6 @@ void assemble_willmore_force(const SurfaceSpace& space, const Field& x, const Fi
 DziukWillmoreFlow::State dziuk_willmore_state_on(const SurfaceSpace& space, const Field& x);
 
 /// The flow's own nodal fields beside x: v, w.
-std::vector<PointField> point_fields(const DziukWillmoreFlow::State& state);
+NodalFields nodal_fields(const DziukWillmoreFlow::State& state);
 
 }  // namespace esfem

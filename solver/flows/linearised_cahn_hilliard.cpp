@@ -22,24 +22,24 @@ LinearisedCahnHilliardScheme::LinearisedCahnHilliardScheme(const SurfaceSpace& s
     throw InputError(format("epsilon: found %g, expected a positive number", epsilon));
 }
 
-void LinearisedCahnHilliardScheme::prepare(const History<State>& history, int q, State& next) {
+void LinearisedCahnHilliardScheme::prepare(const BdfStep<State>& step, State& next) {
   next.x = motion_(next.t);
   assemble_regular(space_, next.x, M_, A_);
-  history.extrapolate(q, &State::u, next.u);
+  step.extrapolate(&State::u, next.u);
 }
 
-void LinearisedCahnHilliardScheme::advance(const History<State>& history, int q, double tau,
-                                           const Field& load, const SymmetricMatrix& W, State& next) {
+void LinearisedCahnHilliardScheme::advance(const BdfStep<State>& step, const Field& load,
+                                           const SymmetricMatrix& W, State& next) {
   // With kappa² = delta_0/(tau epsilon), kappa epsilon u and w have one unit, and both diagonal blocks one
   // size.
-  const double kappa = std::sqrt(history.delta(q)[0] / (tau * epsilon_));
+  const double kappa = std::sqrt(step.delta[0] / (step.tau * epsilon_));
   kappa_M_.values = kappa * M_.values;
   B_.values = -A_.values - W.values / (epsilon_ * epsilon_);
   // w first: A and B have good pivots on the diagonal, for small steps and for large ones.
   block_.factorise(A_, kappa_M_, B_);
-  history.bdf_sum(q, &State::Mu, Mu_sum_);
+  step.known_sum(&State::Mu, Mu_sum_);
   W.multiply(next.u, Wu_);
-  next.w = Mu_sum_ / -tau;
+  next.w = Mu_sum_ / -step.tau;
   next.u = kappa / epsilon_ * (load - Wu_);
   block_.solve(next.w, next.u);
   next.u /= kappa * epsilon_;

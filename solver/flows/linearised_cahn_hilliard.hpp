@@ -19,12 +19,11 @@ class LinearisedCahnHilliardScheme {
 
   /// next.x at next.t, M and A there, and next.u = u~, extrapolated: where g is linearised first. Throws
   /// SingularityError where elements are degenerate.
-  void prepare(const History<State>& history, int q, State& next);
+  void prepare(const BdfStep<State>& step, State& next);
 
   /// After prepare: replaces next.u, where g is linearised, by the solution of the linear system, and finds
   /// next.w and next.Mu. load: N x 1, that of g(next.u); W: mass matrix weighted by g'(next.u).
-  void advance(const History<State>& history, int q, double tau, const Field& load, const SymmetricMatrix& W,
-               State& next);
+  void advance(const BdfStep<State>& step, const Field& load, const SymmetricMatrix& W, State& next);
 
  private:
   const SurfaceSpace& space_;
@@ -79,12 +78,12 @@ class LinearisedCahnHilliard {
 
   /// One step with BDF of order q: fills all fields of next. Throws SingularityError where elements have
   /// degenerated, NumericsError when Newton's method does not converge.
-  void step(const History<State>& history, int q, double tau, State& next) {
-    scheme_.prepare(history, q, next);
+  void step(const BdfStep<State>& step, State& next) {
+    scheme_.prepare(step, next);
     for (int iteration = 0; iteration < most_iterations; ++iteration) {
       before_ = next.u;
       linearise(next);
-      scheme_.advance(history, q, tau, load_, W_, next);
+      scheme_.advance(step, load_, W_, next);
       if (!((next.u - before_).cwiseAbs().maxCoeff() > newton_tolerance_)) return;
     }
     throw NumericsError(format("Newton's method has not converged in %d iterations", most_iterations));

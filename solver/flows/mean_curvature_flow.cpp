@@ -57,12 +57,12 @@ void MeanCurvatureFlow::Fields::complete(State& state) const {
   state.v = interpolated_velocity(state.u);
 }
 
-void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, State& next) {
-  const double delta_0 = history.delta(q)[0];
+void MeanCurvatureFlow::step(const BdfStep<State>& step, State& next) {
+  const double tau = step.tau, delta_0 = step.delta[0];
 
   // (5.2)
-  history.extrapolate(q, &State::x, x_tilde_);
-  history.extrapolate(q, &State::u, u_tilde_);
+  step.extrapolate(&State::x, x_tilde_);
+  step.extrapolate(&State::u, u_tilde_);
 
   assemble_regular(space_, x_tilde_, M_, A_);
   const MeanCurvatureLoads loads{variant_.stabilise, mass_factor_};
@@ -73,7 +73,7 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   if (!u_follows_x) velocity(u_tilde_, next.v);
 
   // (5.1), second line: (delta_0/tau M(x̃) + A(x̃)) u = f(x̃, ũ) - M(x̃) 1/tau sum_{j>=1} delta_j u^{n-j}
-  history.bdf_sum(q, &State::u, sum_);
+  step.known_sum(&State::u, sum_);
   M_.multiply(sum_, M_sum_);
   next.u = loads_.rightCols(4) - M_sum_ / tau;
   spd_.factorise(delta_0 / tau, M_, 1.0, A_);
@@ -87,7 +87,7 @@ void MeanCurvatureFlow::step(const History<State>& history, int q, double tau, S
   }
 
   // (5.1), third line: delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
-  history.bdf_sum(q, &State::x, sum_);
+  step.known_sum(&State::x, sum_);
   next.x = (tau * next.v - sum_) / delta_0;
   require_regular(space_, next.x, next.u.col(3), limits_);
   require_normal(next.x, next.u.leftCols(3), limits_);
@@ -140,14 +140,8 @@ MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space
   return mean_curvature_state(0, x, nu, H);
 }
 
-std::vector<PointField> point_fields(const MeanCurvatureFlow::State& state) {
+NodalFields nodal_fields(const MeanCurvatureFlow::State& state) {
   return {{"v", state.v}, {"nu", state.u.leftCols(3)}, {"H", state.u.col(3)}};
-}
-
-Field table_columns(const MeanCurvatureFlow::State& state) {
-  Field columns(state.x.rows(), 10);
-  columns << state.x, state.v, state.u;
-  return columns;
 }
 
 }  // namespace esfem

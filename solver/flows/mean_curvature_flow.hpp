@@ -6,7 +6,7 @@
 #include "solver/flows/regularity.hpp"
 #include "solver/flows/reinitialisation.hpp"
 #include "solver/linalg/spd_solver.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -42,7 +42,7 @@ class MeanCurvatureFlow {
 
   /// One step of (5.1) with BDF of order q: fills next.x, next.v and next.u. Throws SingularityError where
   /// the surface is singular or no longer resolved (regularity.hpp).
-  void step(const History<State>& history, int q, double tau, State& next);
+  void step(const BdfStep<State>& step, State& next);
 
   /// Takes nu and H from the surface when they differ from it by more than the variant's tolerance.
   void reinitialise(State& state) { reinitialisation_.apply(state); }
@@ -85,9 +85,6 @@ MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const F
 MeanCurvatureFlow::State discrete_mean_curvature_state(const SurfaceSpace& space, const Field& x);
 
 /// The flow's own nodal fields beside x: v, nu, H.
-std::vector<PointField> point_fields(const MeanCurvatureFlow::State& state);
-
-/// x, v, nu, H side by side (N x 10), the columns of the error tables.
-Field table_columns(const MeanCurvatureFlow::State& state);
+NodalFields nodal_fields(const MeanCurvatureFlow::State& state);
 
 }  // namespace esfem

@@ -27,21 +27,21 @@ PhaseSeparation::PhaseSeparation(const SurfaceSpace& space, Field x, double epsi
       flow_(
           space, DoubleWell(), [this](double) -> const Field& { return x_; }, epsilon, newton_tolerance) {}
 
-void PhaseSeparation::step(const History<State>& history, int q, double tau, State& next) {
-  if (energy_falls(history, q, tau, next)) return;
-  take_small_steps(history.back(0), next);
+void PhaseSeparation::step(const BdfStep<State>& step, State& next) {
+  if (energy_falls(step, next)) return;
+  take_small_steps(step.past(0), next);
   ++replaced_steps_;
 }
 
-bool PhaseSeparation::energy_falls(const History<State>& history, int q, double tau, State& next) {
+bool PhaseSeparation::energy_falls(const BdfStep<State>& step, State& next) {
   try {
-    flow_.step(history, q, tau, next);
+    flow_.step(step, next);
   } catch (const SingularityError&) {
     throw;
   } catch (const NumericsError&) {
     return false;
   }
-  const double before = ginzburg_landau_energy(space_, x_, history.back(0).u, epsilon_);
+  const double before = ginzburg_landau_energy(space_, x_, step.past(0).u, epsilon_);
   return ginzburg_landau_energy(space_, x_, next.u, epsilon_) <= (1 + harmless_rise) * before;
 }
 
@@ -55,7 +55,7 @@ void PhaseSeparation::take_small_steps(const State& start, State& next) {
     const double t = past.back(0).t;
     next.t = tau < (1 - 1e-10) * (end - t) ? t + tau : end;
     tau = next.t - t;
-    if (energy_falls(past, 1, tau, next)) {
+    if (energy_falls(past.equal_step(1, tau, next.t), next)) {
       if (next.t == end) return;
       past.push(next);
       tau *= 2;

@@ -24,7 +24,7 @@ class PhaseSeparation {
 
   /// One step with BDF of order q, or its replacement: fills all fields of next, whose energy is at most that
   /// of the newest state. Throws NumericsError when the energy rises in the smallest step, too.
-  void step(const History<State>& history, int q, double tau, State& next);
+  void step(const BdfStep<State>& step, State& next);
 
   /// The number of steps that have been replaced.
   int replaced_steps() const { return replaced_steps_; }
@@ -34,7 +34,7 @@ class PhaseSeparation {
   void resume(const nlohmann::json& saved) { replaced_steps_ = saved.get<int>(); }
 
  private:
-  bool energy_falls(const History<State>& history, int q, double tau, State& next);
+  bool energy_falls(const BdfStep<State>& step, State& next);
   void take_small_steps(const State& start, State& next);
 
   const SurfaceSpace& space_;

@@ -119,12 +119,12 @@ WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field the
 
 WillmoreFlow::~WillmoreFlow() = default;
 
-void WillmoreFlow::step(const History<State>& history, int q, double tau, State& next) {
-  const double delta_0 = history.delta(q)[0];
+void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
+  const double tau = step.tau, delta_0 = step.delta[0];
 
-  history.extrapolate(q, &State::x, x_tilde_);
-  history.extrapolate(q, &State::u, u_tilde_);
-  history.extrapolate(q, &State::w, w_tilde_);
+  step.extrapolate(&State::x, x_tilde_);
+  step.extrapolate(&State::u, u_tilde_);
+  step.extrapolate(&State::w, w_tilde_);
   u_w_tilde_.resize(u_tilde_.rows(), 8);
   u_w_tilde_ << u_tilde_, w_tilde_;
 
@@ -136,7 +136,7 @@ void WillmoreFlow::step(const History<State>& history, int q, double tau, State&
 
   // (3.5a): delta_0/tau M u - A w = F w + f - M 1/tau sum_{j>=1} delta_j u^{n-j};  (3.7): A u + M w = g +
   // theta
-  history.bdf_sum(q, &State::u, sum_);
+  step.known_sum(&State::u, sum_);
   M_.multiply(sum_, M_sum_);
   next.u = loads_.leftCols(4) - M_sum_ / tau;
   next.w = loads_.rightCols(4);
@@ -150,7 +150,7 @@ void WillmoreFlow::step(const History<State>& history, int q, double tau, State&
 
   // (3.4): v = V nu, delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
   next.v = interpolated_velocity(next.u, next.w);
-  history.bdf_sum(q, &State::x, sum_);
+  step.known_sum(&State::x, sum_);
   next.x = (tau * next.v - sum_) / delta_0;
   require_regular(space_, next.x, next.u.col(0), limits_);
   require_normal(next.x, next.u.rightCols(3), limits_);
@@ -216,18 +216,12 @@ WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x,
   return start_from(space, x, std::move(u), {}, law);
 }
 
-std::vector<PointField> point_fields(const WillmoreFlow::State& state) {
+NodalFields nodal_fields(const WillmoreFlow::State& state) {
   return {{"v", state.v},
           {"nu", state.u.rightCols(3)},
           {"H", state.u.col(0)},
           {"V", state.w.col(0)},
           {"z", state.w.rightCols(3)}};
-}
-
-Field table_columns(const WillmoreFlow::State& state) {
-  Field columns(state.x.rows(), 7);
-  columns << state.x, state.u.rightCols(3), state.u.col(0);
-  return columns;
 }
 
 }  // namespace esfem

@@ -7,7 +7,7 @@
 #include "solver/flows/lagged_block_solver.hpp"
 #include "solver/flows/regularity.hpp"
 #include "solver/flows/reinitialisation.hpp"
-#include "solver/mesh/write_vtu.hpp"
+#include "solver/nodal_field.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "solver/time/history.hpp"
 
@@ -57,7 +57,7 @@ class WillmoreFlow {
 
   /// One step of (3.4)-(3.5) with BDF of order q: fills next.x, next.v, next.u and next.w. Throws
   /// SingularityError where the surface is singular or no longer resolved (regularity.hpp).
-  void step(const History<State>& history, int q, double tau, State& next);
+  void step(const BdfStep<State>& step, State& next);
 
   /// Takes nu, H, V and z from the surface when nu and H differ from it by more than the variant's tolerance.
   void reinitialise(State& state) { reinitialisation_.apply(state); }
@@ -117,9 +117,6 @@ WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x,
                                       WillmoreFlow::Variant::Law law);
 
 /// The flow's own nodal fields beside x: v, nu, H, V, z.
-std::vector<PointField> point_fields(const WillmoreFlow::State& state);
-
-/// x, nu, H side by side (N x 7), the columns of the error tables.
-Field table_columns(const WillmoreFlow::State& state);
+NodalFields nodal_fields(const WillmoreFlow::State& state);
 
 }  // namespace esfem

@@ -18,7 +18,7 @@ struct MeshFile {
   Mesh mesh;
   MeshOrigin origin;
   std::vector<std::string> remarks = {};  ///< what the reader changed
-  std::vector<PointField> fields = {};    ///< nodal values that the file has; nan where it has none
+  NodalFields fields = {};                ///< nodal values that the file has; nan where it has none
 };
 
 /// Reads the content of a Gmsh file, MSH 2.2 or 4.1, ASCII or binary.

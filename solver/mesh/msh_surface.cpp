@@ -186,9 +186,9 @@ MeshFile curved_surface(const Msh& msh, const std::vector<Piece>& pieces) {
 }
 
 /// The scalars and vectors of the sections $NodeData; nan at nodes that have no value there.
-std::vector<PointField> fields_of(const Msh& msh) {
+NodalFields fields_of(const Msh& msh) {
   const Eigen::Index n = Eigen::Index(msh.node_tags.size());
-  std::vector<PointField> fields;
+  NodalFields fields;
   for (const MshNodeData& data : msh.node_data) {
     if (data.components != 1 && data.components != 3) continue;
     Field values = Field::Constant(n, data.components, NAN);
@@ -200,7 +200,7 @@ std::vector<PointField> fields_of(const Msh& msh) {
       for (int j = 0; j < data.components; ++j)
         values(node->second, j) = data.values[i * data.components + j];
     }
-    const auto same_name = [&](const PointField& field) { return field.name == data.name; };
+    const auto same_name = [&](const NodalField& field) { return field.name == data.name; };
     // A section for each time step: the last one counts.
     fields.erase(std::remove_if(fields.begin(), fields.end(), same_name), fields.end());
     fields.push_back({data.name, std::move(values)});

@@ -13,7 +13,7 @@ namespace esfem {
 struct ReadMesh {
   Mesh mesh;                       ///< of the degree of the file's elements; the file's node order
   std::string remark;              ///< empty, or what was changed ("orientation was inward: turned")
-  std::vector<PointField> fields;  ///< nodal values that the file has; nan where it has none
+  NodalFields fields;              ///< nodal values that the file has; nan where it has none
   std::vector<long> node_numbers;  ///< the file's own (tags, or counted from 1); empty when they are 1, 2, ..
   MeshOrigin origin;               ///< names its elements
 };

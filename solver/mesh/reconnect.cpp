@@ -114,7 +114,7 @@ void split_touching_nodes(MeshFile& file) {
   std::iota(sources.begin(), sources.end(), 0);
   sources.insert(sources.end(), copied.begin(), copied.end());
   mesh.nodes = Field(mesh.nodes(sources, Eigen::all));
-  for (PointField& field : file.fields) field.values = Field(field.values(sources, Eigen::all));
+  for (NodalField& field : file.fields) field.values = Field(field.values(sources, Eigen::all));
   MeshOrigin& origin = file.origin;
   number_by_position(origin.node_tags, n);
   for (int i : copied) {

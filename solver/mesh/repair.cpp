@@ -41,7 +41,7 @@ int drop_unused_nodes(MeshFile& file) {
   if (int(kept.size()) == n) return 0;
   const Field nodes = mesh.nodes(kept, Eigen::all);
   mesh.nodes = nodes;
-  for (PointField& field : file.fields) field.values = Field(field.values(kept, Eigen::all));
+  for (NodalField& field : file.fields) field.values = Field(field.values(kept, Eigen::all));
   for (int& i : mesh.elements.reshaped()) i = number[i];
   number_by_position(file.origin.node_tags, n);
   keep(file.origin.node_tags, kept);

@@ -60,7 +60,7 @@ SnapshotCollection::SnapshotCollection(std::string pvd, int degree, Connectivity
                    [&](const std::string& file) { return is_snapshot_name(file, path.stem().string()); });
 }
 
-std::string SnapshotCollection::add(int n, double t, const Field& x, const std::vector<PointField>& fields) {
+std::string SnapshotCollection::add(int n, double t, const Field& x, const NodalFields& fields) {
   const fs::path path(pvd_);
   const std::string name = snapshot_name(path.stem().string(), snapshots_.size());
   write_vtu(degree_, elements_, x, fields, {n, t, run_}, (path.parent_path() / name).string());

@@ -20,7 +20,7 @@ class SnapshotCollection {
 
   /// Writes step n at time t as the next snapshot and returns its file name without the folder. Errors as
   /// write_vtu.
-  std::string add(int n, double t, const Field& x, const std::vector<PointField>& fields);
+  std::string add(int n, double t, const Field& x, const NodalFields& fields);
 
   /// Goes on after these snapshots (times and names as `add` gave them), whatever is listed now. Throws
   /// InputError when the file of one is missing.

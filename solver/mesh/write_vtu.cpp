@@ -47,7 +47,7 @@ bool is_plain(const std::string& name) {
   });
 }
 
-void check_fields(const std::vector<PointField>& fields, int n, const std::string& file) {
+void check_fields(const NodalFields& fields, int n, const std::string& file) {
   std::set<std::string> names;
   for (const auto& [name, values] : fields) {
     if (!is_plain(name))
@@ -139,7 +139,7 @@ std::string cells(int degree, const Connectivity& elements, AppendedArrays& arra
   return xml + "</Cells>\n";
 }
 
-std::string point_data(const std::vector<PointField>& fields, AppendedArrays& arrays) {
+std::string point_data(const NodalFields& fields, AppendedArrays& arrays) {
   std::string xml = "<PointData>\n";
   for (const auto& [name, values] : fields)
     xml += arrays.add(name, values, values.cols() == 1 ? "" : " NumberOfComponents=\"3\"");
@@ -151,8 +151,8 @@ const char* byte_order() {
   return *reinterpret_cast<const std::uint8_t*>(&one) == 1 ? "LittleEndian" : "BigEndian";
 }
 
-std::string vtu_text(int degree, const Connectivity& elements, const Field& x,
-                     const std::vector<PointField>& fields, const SnapshotLabel& label) {
+std::string vtu_text(int degree, const Connectivity& elements, const Field& x, const NodalFields& fields,
+                     const SnapshotLabel& label) {
   AppendedArrays arrays;
   std::string text = format(
       "<?xml version=\"1.0\"?>\n"
@@ -171,8 +171,8 @@ std::string vtu_text(int degree, const Connectivity& elements, const Field& x,
 
 }  // namespace
 
-void write_vtu(int degree, const Connectivity& elements, const Field& x,
-               const std::vector<PointField>& fields, const SnapshotLabel& label, const std::string& file) {
+void write_vtu(int degree, const Connectivity& elements, const Field& x, const NodalFields& fields,
+               const SnapshotLabel& label, const std::string& file) {
   check_elements(degree, elements, x, file);
   check_finite(x, "x", file);
   check_fields(fields, int(x.rows()), file);

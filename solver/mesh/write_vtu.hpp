@@ -4,15 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "solver/nodal_field.hpp"
 #include "solver/types.hpp"
 
 namespace esfem {
-
-/// A nodal field and its name in files: N x 1 (scalar) or N x 3 (vector).
-struct PointField {
-  std::string name;
-  Field values;
-};
 
 /// What the snapshots of a run say of it, in UTF-8; empty: nothing.
 struct RunLabel {
@@ -33,7 +28,7 @@ struct SnapshotLabel {
 /// takes for the time) and step; flow and configuration where they are not empty, one number a byte. The same
 /// data give the same bytes. Whole or not at all. Throws InputError when a field has not one row a node or
 /// the file cannot be written, NumericsError when a value is not finite.
-void write_vtu(int degree, const Connectivity& elements, const Field& x,
-               const std::vector<PointField>& fields, const SnapshotLabel& label, const std::string& file);
+void write_vtu(int degree, const Connectivity& elements, const Field& x, const NodalFields& fields,
+               const SnapshotLabel& label, const std::string& file);
 
 }  // namespace esfem

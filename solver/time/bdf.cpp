@@ -40,7 +40,15 @@ std::vector<double> bdf_gamma(int q) {
   return gamma;
 }
 
-void bdf_weights(int q, const double* old, double t, double* delta, double* gamma) {
+BdfWeights bdf_weights(int q) {
+  const std::vector<double> delta = bdf_delta(q), gamma = bdf_gamma(q);
+  BdfWeights weights;
+  std::copy(delta.begin(), delta.end(), weights.delta.begin());
+  std::copy(gamma.begin(), gamma.end(), weights.gamma.begin());
+  return weights;
+}
+
+BdfWeights bdf_weights(int q, const double* old, double t) {
   check_bdf_order(q);
   for (int j = 0; j < q; ++j) {
     const double newer = j == 0 ? t : old[j - 1];
@@ -48,15 +56,16 @@ void bdf_weights(int q, const double* old, double t, double* delta, double* gamm
       throw InputError(format("BDF: time %.17g after %.17g, expected increasing times", newer, old[j]));
   }
   const double tau = t - old[0];
-  delta[0] = 0;
+  BdfWeights weights;
   for (int j = 0; j < q; ++j) {
-    gamma[j] = 1;
+    weights.gamma[j] = 1;
     for (int i = 0; i < q; ++i)
-      if (i != j) gamma[j] *= (t - old[i]) / (old[j] - old[i]);
+      if (i != j) weights.gamma[j] *= (t - old[i]) / (old[j] - old[i]);
     const double ratio = tau / (t - old[j]);
-    delta[0] += ratio;
-    delta[j + 1] = -ratio * gamma[j];
+    weights.delta[0] += ratio;
+    weights.delta[j + 1] = -ratio * weights.gamma[j];
   }
+  return weights;
 }
 
 }  // namespace esfem

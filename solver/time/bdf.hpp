@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "solver/types.hpp"
@@ -17,16 +18,54 @@ std::vector<double> bdf_delta(int q);
 /// gamma_0..gamma_{q-1} of kll19 §5: gamma(zeta) = (1 - (1 - zeta)^q) / zeta. Checks q.
 std::vector<double> bdf_gamma(int q);
 
-/// BDF and extrapolation of order q on any grid of times: `old` has the q newest times, newest first, t is
-/// the new one. delta (q + 1 numbers): the derivative at t of the polynomial through the values at t, old[0],
-/// .., times tau = t - old[0], so that uniform times give bdf_delta. gamma (q numbers): its value at t
-/// without that at t (Lagrange's interpolation; Hairer, Norsett, Wanner: Solving ODEs I, III.5). Throws
-/// InputError unless the times increase. BDF2 is zero-stable as long as a step is less than 1 + sqrt(2) times
-/// the one before (Grigorieff 1983); higher orders allow less.
-void bdf_weights(int q, const double* old, double t, double* delta, double* gamma);
+/// The weights of BDF and of extrapolation of one order q: delta_0..delta_q, gamma_0..gamma_{q-1}.
+struct BdfWeights {
+  std::array<double, max_bdf_order + 1> delta = {};
+  std::array<double, max_bdf_order> gamma = {};
+};
 
-/// The newest states of a run, as a BDF step sees them. A State is a struct with `double t` and Fields.
+/// Those of equal steps: bdf_delta and bdf_gamma.
+BdfWeights bdf_weights(int q);
+
+/// Those on any grid of times: `old` has the q newest times, newest first, t is the new one. delta: the
+/// derivative at t of the polynomial through the values at t, old[0], .., times tau = t - old[0], so that
+/// uniform times give bdf_delta. gamma: its value at t without that at t (Lagrange's interpolation; Hairer,
+/// Norsett, Wanner: Solving ODEs I, III.5). Throws InputError unless the times increase. BDF2 is zero-stable
+/// as long as a step is less than 1 + sqrt(2) times the one before (Grigorieff 1983); higher orders allow
+/// less.
+BdfWeights bdf_weights(int q, const double* old, double t);
+
+/// What a step of BDF of order q from t - tau to t knows: the weights, and the q newest states. Flows take
+/// it. It refers to the states of a History, and holds until that changes.
 template <class State>
-class History;  // time/history.hpp
+class BdfStep {
+ public:
+  const double t;                                     ///< the new time
+  const double tau;                                   ///< the step size
+  const int order;                                    ///< q
+  const std::array<double, max_bdf_order + 1> delta;  ///< delta_0..delta_q
+  const std::array<double, max_bdf_order> gamma;      ///< gamma_0..gamma_{q-1}
+
+  BdfStep(double t, double tau, int order, const BdfWeights& weights,
+          const std::array<const State*, max_bdf_order>& past)
+      : t(t), tau(tau), order(order), delta(weights.delta), gamma(weights.gamma), past_(past) {}
+
+  /// The state j + 1 steps before the new one, j < q.
+  const State& past(int j) const { return *past_[j]; }
+
+  /// Extrapolation to t (kll19 5.2): out = sum_{j<q} gamma_j past(j).*member.
+  void extrapolate(Field State::*member, Field& out) const { combine(gamma.data(), member, out); }
+
+  /// The known part of the BDF sum (kll19 5.1): out = sum_{j=1}^q delta_j past(j-1).*member.
+  void known_sum(Field State::*member, Field& out) const { combine(delta.data() + 1, member, out); }
+
+ private:
+  void combine(const double* factors, Field State::*member, Field& out) const {
+    out = factors[0] * (past_[0]->*member);
+    for (int j = 1; j < order; ++j) out += factors[j] * (past_[j]->*member);
+  }
+
+  std::array<const State*, max_bdf_order> past_;
+};
 
 }  // namespace esfem

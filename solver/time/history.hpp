@@ -33,10 +33,7 @@ class History {
   /// Throws InputError unless 1 <= capacity <= 5: a BDF method of order q needs q states.
   explicit History(int capacity) : capacity_(capacity) {
     check_bdf_order(capacity);
-    for (int q = 1; q <= capacity; ++q) {
-      delta_.push_back(bdf_delta(q));
-      gamma_.push_back(bdf_gamma(q));
-    }
+    for (int q = 1; q <= capacity; ++q) equal_steps_.push_back(bdf_weights(q));
     states_.reserve(capacity);
   }
 
@@ -44,11 +41,11 @@ class History {
   int capacity() const { return capacity_; }
 
   const State& back(int j) const {
-    require(j + 1, size());
+    require(j + 1);
     return states_[j];
   }
   State& back(int j) {
-    require(j + 1, size());
+    require(j + 1);
     return states_[j];
   }
 
@@ -62,48 +59,35 @@ class History {
     std::rotate(states_.begin(), states_.end() - 1, states_.end());
   }
 
-  /// For steps of different sizes: from now on the weights of order q are those for a step from back(0).t,
-  /// back(1).t, .. to t (bdf_weights, with its errors and its bounds on step sizes); until the first call
-  /// they are those of equal steps. Allocates nothing.
-  void aim(int q, double t) {
-    require(q, size());
+  /// The step of BDF q to t from states at distances tau. Allocates nothing.
+  BdfStep<State> equal_step(int q, double tau, double t) const {
+    return {t, tau, q, equal_steps_[require(q) - 1], newest(q)};
+  }
+
+  /// The same whatever the distances of the states are (bdf_weights, with its errors and its bounds on step
+  /// sizes).
+  BdfStep<State> step_to(double t, int q) const {
     std::array<double, max_bdf_order> old;
-    for (int j = 0; j < q; ++j) old[j] = states_[j].t;
-    bdf_weights(q, old.data(), t, delta_[q - 1].data(), gamma_[q - 1].data());
-  }
-
-  /// delta_0..delta_q of BDF q <= capacity, without allocation: a step needs delta(q)[0].
-  const std::vector<double>& delta(int q) const {
-    require(q, capacity_);
-    return delta_[q - 1];
-  }
-
-  /// Extrapolation (kll19 5.2): out = sum_{j<q} gamma_j back(j).*member.
-  void extrapolate(int q, Field State::*member, Field& out) const {
-    require(q, size());
-    combine(gamma_[q - 1].data(), q, member, out);
-  }
-
-  /// The known part of the BDF sum (kll19 5.1): out = sum_{j=1}^q delta_j back(j-1).*member.
-  void bdf_sum(int q, Field State::*member, Field& out) const {
-    require(q, size());
-    combine(delta_[q - 1].data() + 1, q, member, out);
+    for (int j = 0; j < require(q); ++j) old[j] = states_[j].t;
+    return {t, t - old[0], q, bdf_weights(q, old.data(), t), newest(q)};
   }
 
  private:
-  static void require(int count, int available) {
-    if (count < 1 || count > available)
-      throw InputError(format("history: %d states asked for, there are %d", count, available));
+  int require(int count) const {
+    if (count < 1 || count > size())
+      throw InputError(format("history: %d states asked for, there are %d", count, size()));
+    return count;
   }
 
-  void combine(const double* weights, int q, Field State::*member, Field& out) const {
-    out = weights[0] * (states_[0].*member);
-    for (int j = 1; j < q; ++j) out += weights[j] * (states_[j].*member);
+  std::array<const State*, max_bdf_order> newest(int count) const {
+    std::array<const State*, max_bdf_order> newest = {};
+    for (int j = 0; j < count; ++j) newest[j] = &states_[j];
+    return newest;
   }
 
   int capacity_;
   std::vector<State> states_;
-  std::vector<std::vector<double>> delta_, gamma_;
+  std::vector<BdfWeights> equal_steps_;  ///< of the orders 1 to capacity
 };
 
 }  // namespace esfem

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The time loop.
 #pragma once
 
 #include <algorithm>
@@ -10,34 +11,19 @@
 #include "solver/error.hpp"
 #include "solver/time/checkpoint.hpp"
 #include "solver/time/history.hpp"
+#include "solver/time/steps.hpp"
 
 namespace esfem {
 
-/// How the states 1..q-1 are found. exact: from the exact solution. cascade: BDF 1, 2, .. with the same step
-/// size (global order 2 at most). substeps: the same method started by a cascade with step size tau/K, every
-/// K-th kept.
-struct Start {
-  enum Kind { exact, cascade, substeps } kind = exact;
-  int substeps_per_step = 1;  ///< K
+/// What a run starts from: a state, and for Start::exact the exact solution.
+template <class State>
+struct StartingValues {
+  State initial;
+  std::function<State(double t)> exact;
+
+  StartingValues(State initial, std::function<State(double t)> exact = {})
+      : initial(std::move(initial)), exact(std::move(exact)) {}
 };
-/// Parses "exact" | "cascade" | "substeps:K"; throws InputError that lists these.
-Start parse_start(const std::string& text);
-std::string to_string(const Start& start);
-
-struct TimeGrid {
-  int order = 2;  ///< q of BDF
-  double tau = 0;
-  int steps = 0;  ///< end time = steps * tau, starting steps counted
-  Start start;
-};
-
-/// Throws InputError unless 1 <= order <= 5, tau > 0, steps >= 0, K >= 1.
-void check_time_grid(const TimeGrid& grid);
-
-/// What the numbers of a step depend on: all but the number of steps.
-nlohmann::json identity_of_steps(const TimeGrid& grid);
-/// Why a run that has come so far does not lead to this end; empty when it does.
-std::string objection_of_end(const TimeGrid& grid, const RunPosition& done);
 
 /// Throws NumericsError naming field and node when a value of the state is not finite.
 template <class State>
@@ -79,17 +65,26 @@ void settle(Flow& flow, History<typename Flow::State>& past, typename Flow::Stat
   if constexpr (Settles<Flow>::value) flow.settle(past, next);
 }
 
-/// Advances `past`, which has step size tau/K, from state n-1 to state n of the coarse grid; leaves that in
+/// One step of a flow, and its check.
+template <class Flow>
+void take_step(Flow& flow, const BdfStep<typename Flow::State>& step, typename Flow::State& next) {
+  flow.step(step, next);
+  check_finite(next);
+}
+
+// Equal steps.
+
+/// Advances `past`, which has step size tau/K, from state n-1 to state n of the coarse steps; leaves that in
 /// `next`.
 template <class Flow>
-void take_substeps(Flow& flow, History<typename Flow::State>& past, int q, double tau, int K, int n,
+void take_substeps(Flow& flow, const UniformSteps& steps, int n, History<typename Flow::State>& past,
                    typename Flow::State& next) {
+  const int K = steps.start.substeps_per_step;
   for (int k = 1; k <= K; ++k) {
     const int m = (n - 1) * K + k;
-    next.t = static_cast<double>(m) / K * tau;
+    next.t = (steps.first + static_cast<double>(m) / K) * steps.tau;
     try {
-      flow.step(past, std::min(m, q), tau / K, next);
-      check_finite(next);
+      take_step(flow, past.equal_step(std::min(m, steps.order), steps.tau / K, next.t), next);
       settle(flow, past, next);
     } catch (const SingularityError&) {
       throw;
@@ -105,6 +100,176 @@ void take_substeps(Flow& flow, History<typename Flow::State>& past, int q, doubl
   }
 }
 
+/// Computes the starting value of step n < q. `fine` is the history with step size tau/K (Start::substeps).
+template <class Flow>
+void find_starting_value(Flow& flow, const UniformSteps& steps,
+                         const StartingValues<typename Flow::State>& start, int n,
+                         History<typename Flow::State>& past, History<typename Flow::State>& fine,
+                         typename Flow::State& next) {
+  const double t = steps.time(n);
+  switch (steps.start.kind) {
+  case Start::exact:
+    next = start.exact(t);
+    break;
+  case Start::cascade:
+    next.t = t;
+    take_step(flow, past.equal_step(n, steps.tau, t), next);
+    settle(flow, past, next);
+    break;
+  case Start::substeps:
+    take_substeps(flow, steps, n, fine, next);
+    break;
+  }
+  next.t = t;
+}
+
+/// Finds the states 0..q-1 (fewer when the run is shorter) and pushes them to `past`. Returns false when
+/// observe(n, state) does not let the run go on.
+template <class Flow, class Observe>
+bool take_starting_steps(Flow& flow, const UniformSteps& steps,
+                         const StartingValues<typename Flow::State>& start, const Observe& observe,
+                         History<typename Flow::State>& past, RunPosition& done) {
+  if (steps.start.kind == Start::exact && steps.order > 1 && steps.steps > 0 && !start.exact)
+    throw InputError("start exact: there is no exact solution; expected start cascade or substeps:K");
+  typename Flow::State next = start.initial;
+  next.t = steps.time(0);
+  History<typename Flow::State> fine(steps.order);
+  fine.push(next);
+  bool goes_on = true;
+  for (int n = 0; goes_on && n < steps.order && n <= steps.steps; ++n)
+    at_step(n, steps.time(n), [&] {
+      if (n > 0) find_starting_value(flow, steps, start, n, past, fine, next);
+      check_finite(next);
+      goes_on = observe(n, std::as_const(next));
+      past.push(next);
+      done.n = n;
+    });
+  return goes_on;
+}
+
+inline int states_kept(const UniformSteps& steps) {
+  return steps.order;
+}
+template <class State>
+bool is_at_end(const UniformSteps& steps, const RunPosition& done, const History<State>&) {
+  return done.n >= steps.steps;
+}
+template <class Flow>
+void take_next_step(Flow& flow, const UniformSteps& steps, const History<typename Flow::State>& past,
+                    RunPosition& done, typename Flow::State& next) {
+  next.t = steps.time(done.n + 1);
+  take_step(flow, past.equal_step(steps.order, steps.tau, next.t), next);
+}
+
+/// Whether a run goes on from what is there: not from some of the starting values.
+template <class State>
+bool can_be_resumed(const UniformSteps&, const RunPosition&, const History<State>& past) {
+  return past.size() == past.capacity();
+}
+inline bool is_last_to_resume(const UniformSteps&, const RunPosition&, double) {
+  return false;
+}
+
+// Given times and steps that follow the solution start from the initial state alone.
+
+template <class Flow, class Steps, class Observe>
+bool take_starting_steps(Flow&, const Steps&, const StartingValues<typename Flow::State>& start,
+                         const Observe& observe, History<typename Flow::State>& past, RunPosition&) {
+  typename Flow::State next = start.initial;
+  bool goes_on = true;
+  at_step(0, next.t, [&] {
+    check_finite(next);
+    goes_on = observe(0, std::as_const(next));
+  });
+  past.push(next);
+  return goes_on;
+}
+
+inline int states_kept(const GivenTimes& steps) {
+  return steps.order;
+}
+template <class State>
+bool is_at_end(const GivenTimes& steps, const RunPosition& done, const History<State>&) {
+  return done.n + 1 >= static_cast<int>(steps.times.size());
+}
+template <class Flow>
+void take_next_step(Flow& flow, const GivenTimes& steps, const History<typename Flow::State>& past,
+                    RunPosition& done, typename Flow::State& next) {
+  next.t = steps.times[done.n + 1];
+  take_step(flow, past.step_to(next.t, std::min(steps.order, past.size())), next);
+}
+template <class State>
+bool can_be_resumed(const GivenTimes&, const RunPosition&, const History<State>&) {
+  return true;
+}
+inline bool is_last_to_resume(const GivenTimes&, const RunPosition&, double) {
+  return false;
+}
+
+/// Takes one step to next.t and returns the factor for the size of the following one. Throws NumericsError
+/// when the estimated error is more than 4 times the tolerance.
+template <class Flow>
+double attempt_step(Flow& flow, const AdaptiveSteps& steps, const History<typename Flow::State>& past,
+                    typename Flow::State& next) {
+  using State = typename Flow::State;
+  take_step(flow, past.step_to(next.t, std::min(steps.order, past.size())), next);
+  if (past.size() < 2) return 1;
+  Field State::*controlled = nullptr;
+  for (const NamedField<State>& field : State::fields)
+    if (field.name == steps.controlled) controlled = field.member;
+  if (!controlled)
+    throw InputError("adaptive steps: there is no field '" + steps.controlled + "' to control");
+  Field difference;
+  past.step_to(next.t, 2).extrapolate(controlled, difference);
+  difference -= next.*controlled;
+  const double error = root_mean_square(difference, steps.units);
+  if (!(error <= 4 * steps.tolerance))
+    throw NumericsError(format("estimated error %g of a step of size %g: at most %g expected", error,
+                               next.t - past.back(0).t, 4 * steps.tolerance));
+  return step_factor(steps.tolerance, error);
+}
+
+inline int states_kept(const AdaptiveSteps&) {
+  return 2;
+}
+template <class State>
+bool is_at_end(const AdaptiveSteps& steps, const RunPosition&, const History<State>& past) {
+  return past.back(0).t >= steps.end_time;
+}
+
+/// Computes `next` by a step whose size is halved until it succeeds; done.tau is the size to begin with, and
+/// becomes that for the following step. When the size has come down to first_step / 100 the error is let
+/// through.
+template <class Flow>
+void take_next_step(Flow& flow, const AdaptiveSteps& steps, const History<typename Flow::State>& past,
+                    RunPosition& done, typename Flow::State& next) {
+  const double t = past.back(0).t;
+  done.least_end = std::max(done.least_end, least_end(t, done.tau));
+  for (;; ++done.rejected) {
+    next.t = next_time(steps, t, done.tau);
+    const double tau = next.t - t;
+    try {
+      const double wanted = tau * attempt_step(flow, steps, past, next);
+      done.tau = steps.largest_step > 0 ? std::min(steps.largest_step, wanted) : wanted;
+      return;
+    } catch (const NumericsError&) {
+      if (tau / 2 < steps.first_step / 100) throw;
+      done.tau = tau / 2;
+    }
+  }
+}
+
+/// A run with a later end goes on from states whose steps do not depend on this end.
+template <class State>
+bool can_be_resumed(const AdaptiveSteps& steps, const RunPosition& done, const History<State>&) {
+  return done.least_end <= steps.end_time;
+}
+inline bool is_last_to_resume(const AdaptiveSteps& steps, const RunPosition& done, double t) {
+  return least_end(t, done.tau) > steps.end_time;
+}
+
+// The loop.
+
 /// Whether an observer lets the run go on after this step: one that returns nothing always does.
 template <class Observer, class State>
 bool goes_on_after(Observer& observe, int n, const State& state) {
@@ -116,116 +281,92 @@ bool goes_on_after(Observer& observe, int n, const State& state) {
   }
 }
 
-[[noreturn]] inline void stop_at(int n, double t) {
-  throw StoppedError(format("stopped at t = %g (step %d)", t, n));
-}
-
-/// Computes the starting value of step n < q. `fine` is the history with step size tau/K (Start::substeps).
-template <class Flow>
-void find_starting_value(Flow& flow, const TimeGrid& grid,
-                         const std::function<typename Flow::State(double t)>& exact_state, int n,
-                         History<typename Flow::State>& past, History<typename Flow::State>& fine,
-                         typename Flow::State& next) {
-  const double t = n * grid.tau;
-  switch (grid.start.kind) {
-  case Start::exact:
-    next = exact_state(t);
-    break;
-  case Start::cascade:
-    next.t = t;
-    flow.step(past, n, grid.tau, next);
-    settle(flow, past, next);
-    break;
-  case Start::substeps:
-    take_substeps(flow, fine, grid.order, grid.tau, grid.start.substeps_per_step, n, next);
-    break;
-  }
-  next.t = t;
-}
-
-/// Finds the states 0..q-1 (fewer when the run is shorter), observes them and pushes them to `past`.
-template <class Flow, class Observer>
-void take_starting_steps(Flow& flow, const TimeGrid& grid, const typename Flow::State& initial,
-                         const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe,
-                         History<typename Flow::State>& past) {
-  typename Flow::State next = initial;
-  History<typename Flow::State> fine(grid.order);
-  fine.push(next);
-  for (int n = 0; n < grid.order && n <= grid.steps; ++n)
-    at_step(n, n * grid.tau, [&] {
-      if (n > 0) find_starting_value(flow, grid, exact_state, n, past, fine, next);
-      check_finite(next);
-      if (!goes_on_after(observe, n, std::as_const(next)) && n < grid.steps) stop_at(n, n * grid.tau);
-      past.push(next);
-    });
-}
-
-template <class Flow, class = void>
+template <class Keeper, class = void>
 struct KeepsProgress : std::false_type {};
-template <class Flow>
-struct KeepsProgress<Flow,
-                     std::void_t<decltype(std::declval<Flow&>().resume(std::declval<Flow&>().progress()))>>
+template <class Keeper>
+struct KeepsProgress<
+    Keeper, std::void_t<decltype(std::declval<Keeper&>().resume(std::declval<Keeper&>().progress()))>>
     : std::true_type {};
 
-/// Checkpoint::resume, before which the flow itself is attached when it has progress() and resume(json). A
-/// checkpoint serves one run. False without checkpoint.
-template <class Grid, class Flow, class State>
-bool resume_run(Checkpoint* checkpoint, Flow& flow, const Grid& grid, const State& initial,
-                History<State>& past, RunPosition& done) {
-  if (!checkpoint) return false;
-  if constexpr (KeepsProgress<Flow>::value)
-    checkpoint->attach([&flow] { return flow.progress(); },
-                       [&flow](const nlohmann::json& saved) { flow.resume(saved); });
-  return checkpoint->resume(identity_of_steps(grid), initial, past, done,
-                            [&grid](const RunPosition& saved) { return objection_of_end(grid, saved); });
+/// A flow or an observer that has progress() and resume(json) goes on with the run.
+template <class Keeper>
+void attach_progress(Checkpoint& checkpoint, Keeper& keeper) {
+  if constexpr (KeepsProgress<Keeper>::value)
+    checkpoint.attach([&keeper] { return keeper.progress(); },
+                      [&keeper](const nlohmann::json& saved) { keeper.resume(saved); });
 }
 
-/// Runs a flow from t = 0: calls observe(n, state) for n = 0..steps, the starting steps included; t = n tau.
-/// A flow has a type State (see History) and
-///   void step(const History<State>& past, int q, double tau, State& next)
-/// that computes next (its t is set already, its Fields have the right size and stale values) from the q
-/// newest states by BDF of order q. exact_state(t) is needed for Start::exact with q > 1; without it that
-/// start is an InputError. NumericsErrors (of the observer too) are rethrown with step and time; a non-finite
-/// value in a new state is one too. A flow that has settle(past, next) may change both after each step. An
-/// observer that returns false ends the run after this step with a
-/// StoppedError. With a checkpoint the run goes on where an earlier one had saved its states (after the
-/// starting steps, that is), with the same or another number of steps, and observes the steps from there on:
-/// with the same numbers, as long as `step` depends on its arguments alone, or what an earlier step has left
-/// in the flow is restored by its resume(progress()). It is saved now and then, when the run is stopped, and
-/// at its end.
-template <class Flow, class Observer>
-void integrate(Flow& flow, const TimeGrid& grid, typename Flow::State initial,
-               const std::function<typename Flow::State(double t)>& exact_state, Observer&& observe,
-               Checkpoint* checkpoint = nullptr) {
-  check_time_grid(grid);
-  if (grid.start.kind == Start::exact && grid.order > 1 && grid.steps > 0 && !exact_state)
-    throw InputError("start exact: there is no exact solution; expected start cascade or substeps:K");
+struct StepCount {
+  int steps = 0, rejected = 0;
+};
 
-  History<typename Flow::State> past(grid.order);
+/// Runs a flow: calls observer(n, state) for n = 0, 1, .., the starting steps included. A flow has a type
+/// State (see History) and
+///   void step(const BdfStep<State>& step, State& next)
+/// that computes `next` (its t is set already, its Fields have the right size and stale values).
+///
+/// The exact solution is needed for Start::exact with q > 1; without it that start is an InputError.
+/// NumericsErrors (of observers too) are rethrown with step and time; a non-finite value in a new state is
+/// one too. A flow that has settle(past, next) may change both after each step. An observer that returns
+/// false ends the run after this step with a StoppedError. With a checkpoint (none: nullptr) the run goes on
+/// where an earlier one had saved its states (after the starting steps, that is), with the same or a later
+/// end, and observes the steps from there on: with the same numbers, as long as `step` depends on its
+/// arguments alone, or what an earlier step has left in the flow is restored by its resume(progress()). What
+/// observers keep is saved in the same way. It is saved now and then, when the run is stopped, and at its
+/// end; with adaptive steps at the last state whose steps do not depend on the end time. A checkpoint serves
+/// one run.
+template <class Steps = UniformSteps, class Flow, class... Observers>
+StepCount integrate(Flow& flow, const Steps& steps, const StartingValues<typename Flow::State>& start,
+                    Checkpoint* checkpoint, Observers&&... observers) {
+  using State = typename Flow::State;
+  check_steps(steps);
+  const auto observe = [&](int n, const State& state) {
+    bool goes_on = true;
+    ((goes_on = goes_on_after(observers, n, state) && goes_on), ...);
+    return goes_on;
+  };
+  History<State> past(states_kept(steps));
   RunPosition done;
-  initial.t = 0;
-  if (!resume_run(checkpoint, flow, grid, initial, past, done)) {
-    take_starting_steps(flow, grid, initial, exact_state, observe, past);
-    done.n = past.size() - 1;
+  if constexpr (std::is_same_v<Steps, AdaptiveSteps>) done.tau = steps.first_step;
+  State next = start.initial;
+  next.t = 0;
+  if constexpr (std::is_same_v<Steps, UniformSteps>) next.t = steps.time(0);
+  if constexpr (std::is_same_v<Steps, GivenTimes>) next.t = steps.times[0];
+
+  bool is_resumed = false, goes_on = true;
+  if (checkpoint) {
+    attach_progress(*checkpoint, flow);
+    (attach_progress(*checkpoint, observers), ...);
+    is_resumed = checkpoint->resume(identity_of_steps(steps), next, past, done,
+                                    [&](const RunPosition& saved) { return objection_of_end(steps, saved); });
   }
-  typename Flow::State& next = initial;
-  bool goes_on = true;
-  while (goes_on && done.n < grid.steps) {
-    if (checkpoint) checkpoint->save_when_due(done, past);
+  if (!is_resumed)
+    goes_on = take_starting_steps(flow, steps, StartingValues<State>(next, start.exact), observe, past, done);
+
+  while (goes_on && !is_at_end(steps, done, past)) {
+    if (checkpoint && can_be_resumed(steps, done, past))
+      is_last_to_resume(steps, done, past.back(0).t) ? checkpoint->save(done, past)
+                                                     : checkpoint->save_when_due(done, past);
     const int n = done.n + 1;
-    const double t = n * grid.tau;
-    at_step(n, t, [&] {
-      next.t = t;
-      flow.step(past, grid.order, grid.tau, next);
-      check_finite(next);
+    at_step(n, next.t, [&] {
+      take_next_step(flow, steps, past, done, next);
       settle(flow, past, next);
-      goes_on = goes_on_after(observe, n, std::as_const(next));
-      past.push(next);
+      goes_on = observe(n, std::as_const(next));
     });
+    past.push(next);
     done.n = n;
   }
-  if (checkpoint && past.size() == past.capacity()) checkpoint->save(done, past);
-  if (done.n < grid.steps) stop_at(done.n, past.back(0).t);
+  if (checkpoint && can_be_resumed(steps, done, past)) checkpoint->save(done, past);
+  if (!is_at_end(steps, done, past))
+    throw StoppedError(format("stopped at t = %g (step %d)", past.back(0).t, done.n));
+  return {done.n, done.rejected};
+}
+
+/// The same without checkpoint.
+template <class Steps = UniformSteps, class Flow, class... Observers>
+StepCount integrate(Flow& flow, const Steps& steps, const StartingValues<typename Flow::State>& start,
+                    Observers&&... observers) {
+  return integrate<Steps>(flow, steps, start, static_cast<Checkpoint*>(nullptr), observers...);
 }
 
 }  // namespace esfem

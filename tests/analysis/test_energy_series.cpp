@@ -124,7 +124,7 @@ struct ResumedEnergy : testing::Test {
       if (n == stop) throw Stopped();
     };
     try {
-      integrate(flow, {2, tau, 30, {Start::cascade, 1}}, start, {}, observe, &checkpoint);
+      integrate(flow, {2, tau, 30, {Start::cascade, 1}}, start, &checkpoint, observe);
     } catch (const Stopped&) {
     }
     return outcome;

@@ -11,7 +11,7 @@
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace esfem::test_resumed_run {
 namespace {
@@ -41,7 +41,7 @@ WillmoreFlow::State start_of(const SurfaceSpace& space, const Surface& surface, 
 struct ForgetfulWillmoreFlow {
   using State = WillmoreFlow::State;
   WillmoreFlow flow;
-  void step(const History<State>& past, int q, double tau, State& next) { flow.step(past, q, tau, next); }
+  void step(const BdfStep<State>& step, State& next) { flow.step(step, next); }
 };
 ForgetfulWillmoreFlow make_flow(const SurfaceSpace& space, const ForgetfulWillmoreFlow*) {
   return {make_flow(space, static_cast<const WillmoreFlow*>(nullptr))};
@@ -85,7 +85,7 @@ struct ResumedRun : testing::Test {
     attach(checkpoint, recorder);
     Outcome outcome;
     const auto observe = [&](int n, const State& state) {
-      recorder.record(n, state.t, state.x, point_fields(state));
+      recorder.record(n, state.t, state.x, nodal_fields(state));
       if (n == stop) throw Stopped();
       outcome.last = state;
       ++outcome.observed;
@@ -94,9 +94,9 @@ struct ResumedRun : testing::Test {
         start_of(space, ellipsoid(1, 1, 0.95), mesh.nodes, static_cast<const Flow*>(nullptr));
     try {
       if (adaptive)
-        integrate_adaptive(flow, {2, 0.1, 1e-3, 1e-4, 0.003}, initial, &State::x, observe, &checkpoint);
+        integrate(flow, AdaptiveSteps{"x", 2, 0.1, 1e-3, 1e-4, 0.003}, initial, &checkpoint, observe);
       else
-        integrate(flow, {3, 0.004, 25, {Start::substeps, 4}}, initial, {}, observe, &checkpoint);
+        integrate(flow, {3, 0.004, 25, {Start::substeps, 4}}, initial, &checkpoint, observe);
     } catch (const Stopped&) {
       return outcome;
     }

@@ -12,10 +12,10 @@ namespace esfem {
 
 /// The state at the end of a run.
 template <class Flow>
-typename Flow::State last_state(Flow& flow, const TimeGrid& grid, const typename Flow::State& initial,
+typename Flow::State last_state(Flow& flow, const UniformSteps& grid, const typename Flow::State& initial,
                                 const std::function<typename Flow::State(double t)>& exact_state = nullptr) {
   typename Flow::State last;
-  integrate(flow, grid, initial, exact_state, [&](int, const typename Flow::State& now) { last = now; });
+  integrate(flow, grid, {initial, exact_state}, [&](int, const typename Flow::State& now) { last = now; });
   return last;
 }
 
@@ -52,7 +52,7 @@ struct ReferenceCase {
 
   nlohmann::json json;
   Mesh mesh;
-  TimeGrid grid;
+  UniformSteps grid;
 
  private:
   static std::string folder() { return std::string(ESFEM_SOURCE_DIR) + "/reference/independent/"; }

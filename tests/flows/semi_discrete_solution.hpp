@@ -34,7 +34,7 @@ class SemiDiscreteSolution {
   template <class... Variant>
   SemiDiscreteSolution(const SurfaceSpace& space, State initial, Variant... variant)
       : space_(space), initial_(std::move(initial)), flow_(space, variant...) {
-    integrate(flow_, {5, end_time / fine_steps, fine_steps, parse_start("substeps:128")}, initial_, {},
+    integrate(flow_, {5, end_time / fine_steps, fine_steps, parse_start("substeps:128")}, initial_,
               [this](int n, const State& state) { states_[n] = state; });
   }
 
@@ -44,8 +44,8 @@ class SemiDiscreteSolution {
     SymmetricMatrix M = space_.matrix(), A = space_.matrix();
     const auto starting_values = [&](double t) { return states_.at(std::lround(t / end_time * fine_steps)); };
     double largest = 0;
-    integrate(flow_, {q, end_time / steps, steps, start}, initial_,
-              std::function<State(double)>(starting_values), [&](int n, const State& state) {
+    integrate(flow_, {q, end_time / steps, steps, start},
+              {initial_, std::function<State(double)>(starting_values)}, [&](int n, const State& state) {
                 if (n < q) return;
                 const State& fine = states_.at(n * fine_steps / steps);
                 space_.assemble(fine.x, M, A);

@@ -7,7 +7,7 @@
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/growing_sphere.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace esfem::test_adaptive {
 namespace {
@@ -18,14 +18,13 @@ struct Shrinking {
 
   /// The largest error of the mean radius of the unit sphere, R = sqrt(1 - 4t), until `end`.
   template <class Flow>
-  std::pair<double, AdaptiveRun> run(Flow flow, const typename Flow::State& initial,
-                                     const AdaptiveGrid& grid) const {
+  std::pair<double, StepCount> run(Flow flow, const typename Flow::State& initial,
+                                   const AdaptiveSteps& grid) const {
     double error = 0;
-    const AdaptiveRun run =
-        integrate_adaptive(flow, grid, initial, &Flow::State::x, [&](int, const typename Flow::State& state) {
-          const double R = std::sqrt(1 - 4 * state.t);
-          error = std::max(error, std::abs(state.x.rowwise().norm().mean() - R));
-        });
+    const StepCount run = integrate(flow, grid, initial, [&](int, const typename Flow::State& state) {
+      const double R = std::sqrt(1 - 4 * state.t);
+      error = std::max(error, std::abs(state.x.rowwise().norm().mean() - R));
+    });
     return {error, run};
   }
 };
@@ -35,7 +34,7 @@ TEST(AdaptiveFlows, MeanCurvatureFlowFollowsTheShrinkingSphere) {
   const SurfaceSpace space(problem.mesh);
   const auto run = [&](double tolerance, double first = 1e-5) {
     return problem.run(MeanCurvatureFlow(space, {}), mean_curvature_state_on(sphere(1), problem.mesh.nodes),
-                       {2, 0.24, tolerance, first, 0});
+                       {"x", 2, 0.24, tolerance, first, 0});
   };
   const auto [coarse, coarse_run] = run(1e-3);
   const auto [fine, fine_run] = run(1e-4);
@@ -52,7 +51,7 @@ TEST(AdaptiveFlows, DziuksSchemeFollowsTheShrinkingSphere) {
   const SurfaceSpace space(problem.mesh);
   const auto run = [&](double tolerance) {
     return problem.run(DziukFlow(space), dziuk_state_on(space, problem.mesh.nodes),
-                       {2, 0.24, tolerance, 1e-5, 0});
+                       {"x", 2, 0.24, tolerance, 1e-5, 0});
   };
   EXPECT_LT(run(1e-3).first, 0.03);
 }
@@ -66,11 +65,11 @@ TEST(AdaptiveFlows, GrowthCoupledToDiffusionFollowsTheTolerance) {
   const CoupledDiffusionParameters parameters;
   Flow flow(space, GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised), parameters, {});
   State fine, last;
-  integrate(flow, {4, 1.0 / 200, 200, parse_start("substeps:32")}, initial, {},
+  integrate(flow, {4, 1.0 / 200, 200, parse_start("substeps:32")}, initial,
             [&](int, const State& state) { fine = state; });
   const auto error = [&](double tolerance) {
-    integrate_adaptive(flow, {2, 1, tolerance, 1e-5, 0}, initial, &State::x,
-                       [&](int, const State& state) { last = state; });
+    integrate(flow, AdaptiveSteps{"x", 2, 1, tolerance, 1e-5, 0}, initial,
+              [&](int, const State& state) { last = state; });
     return (last.x - fine.x).norm() / fine.x.norm();
   };
   const double coarse = error(3e-3);
@@ -83,14 +82,13 @@ TEST(AdaptiveFlows, StepsGetSmallTowardsASingularity) {
   const SurfaceSpace space(problem.mesh);
   MeanCurvatureFlow flow(space, {});
   double last = 0, step = 0, largest = 0;
-  const AdaptiveGrid grid = {2, 1, 1e-3, 1e-4, 0};
-  EXPECT_THROW(integrate_adaptive(flow, grid, mean_curvature_state_on(sphere(1), problem.mesh.nodes),
-                                  &MeanCurvatureFlow::State::x,
-                                  [&](int, const MeanCurvatureFlow::State& state) {
-                                    step = state.t - last;
-                                    last = state.t;
-                                    largest = std::max(largest, step);
-                                  }),
+  const AdaptiveSteps grid = {"x", 2, 1, 1e-3, 1e-4, 0};
+  EXPECT_THROW(integrate(flow, grid, mean_curvature_state_on(sphere(1), problem.mesh.nodes),
+                         [&](int, const MeanCurvatureFlow::State& state) {
+                           step = state.t - last;
+                           last = state.t;
+                           largest = std::max(largest, step);
+                         }),
                SingularityError);
   EXPECT_NEAR(last, 0.25, 5e-3);
   EXPECT_LT(step, largest / 100);

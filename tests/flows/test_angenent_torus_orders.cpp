@@ -37,7 +37,7 @@ std::map<std::string, double> orders_in_h(const std::string& norm, RunErrors err
   return orders;
 }
 
-const TimeGrid grid{2, 0.01, 10, Start{}};
+const UniformSteps grid{2, 0.01, 10, Start{}};
 
 /// Errors of (5.1) against `exact`, which gives the starting values, too.
 Errors mean_curvature_errors(const SurfaceSpace& space, const Field& x0, const ExactEvolution& exact) {
@@ -46,8 +46,7 @@ Errors mean_curvature_errors(const SurfaceSpace& space, const Field& x0, const E
   const std::function<MeanCurvatureFlow::State(double)> state = [&](double t) {
     return exact_mean_curvature_state(exact, x0, t);
   };
-  integrate(flow, grid, state(0), state,
-            [&](int, const MeanCurvatureFlow::State& now) { errors.record(now.t, table_columns(now)); });
+  integrate(flow, grid, {state(0), state}, errors);
   return errors.maxima();
 }
 
@@ -71,17 +70,11 @@ TEST(AngenentTorusOrders, NeitherDziuksSchemeNorParticlesOnRaysHaveThem) {
       have_the_orders_of_the_theory(orders_in_h("lifted_H1", [](const SurfaceSpace& space, const Field& x0) {
         const ExactEvolution exact = shrinking_angenent_torus();
         DziukFlow flow(space);
-        DiscreteCurvature curvature(space);
         ErrorRecorder errors(space, exact, x0);
         const std::function<DziukFlow::State(double)> state = [&](double t) {
           return exact_dziuk_state(exact, x0, t);
         };
-        integrate(flow, grid, state(0), state, [&](int, const DziukFlow::State& now) {
-          curvature.compute(now.x);
-          Field all(x0.rows(), 10);
-          all << now.x, now.v, curvature.nu(), curvature.H();
-          errors.record(now.t, all);
-        });
+        integrate(flow, grid, {state(0), state}, errors);
         return errors.maxima();
       })));
   // Particles that do not slide along the profile: errors of x do not tend to zero.

@@ -72,7 +72,7 @@ TEST_P(BgnSchemes, AreaDecreasesWhateverTheStepSize) {
        {std::pair{1e-3, 5}, std::pair{0.02, 5}, std::pair{1.0, 3}, std::pair{100.0, 1}}) {
     BgnFlow flow(space);
     Field old_x;
-    integrate(flow, {1, tau, steps, {}}, bgn_state_on(space, mesh.nodes), {},
+    integrate(flow, {1, tau, steps, {}}, bgn_state_on(space, mesh.nodes),
               [&, tau = tau](int n, const State& now) {
                 if (n > 0) {
                   space.assemble(old_x, M, A);

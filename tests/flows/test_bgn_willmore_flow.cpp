@@ -144,7 +144,7 @@ TEST_P(BgnWillmoreSchemes, EnergyOfAnEllipsoidDecreasesAndTheMeshStaysGood) {
   BgnWillmoreFlow flow(flat_space);
   double old_energy = energy(flat, flat.nodes);
   EXPECT_GT(old_energy, 1.15 * 8 * pi);
-  integrate(flow, {1, 0.01, 20, {}}, bgn_willmore_state_on(flat_space, flat.nodes), {},
+  integrate(flow, {1, 0.01, 20, {}}, bgn_willmore_state_on(flat_space, flat.nodes),
             [&](int n, const State& now) {
               const double new_energy = energy(flat, now.x);
               EXPECT_LE(new_energy, old_energy + 1e-10) << "step " << n;

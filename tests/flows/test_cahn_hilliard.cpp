@@ -220,7 +220,7 @@ TEST(CahnHilliard, KeepsTheMassAndLosesEnergyOnAStationarySurface) {
       space, 0, mesh.nodes, u,
       cahn_hilliard_w(space, mesh.nodes, u, eps, load_of_g(space, DoubleWell(), 0, mesh.nodes, u)));
   std::vector<double> mass, energy;
-  integrate(flow, {1, 1e-3, 40, {}}, start, {}, [&](int, const State& state) {
+  integrate(flow, {1, 1e-3, 40, {}}, start, [&](int, const State& state) {
     mass.push_back(state.Mu.sum());
     energy.push_back(ginzburg_landau_energy(space, state.x, state.u, eps));
   });

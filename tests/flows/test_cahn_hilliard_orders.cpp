@@ -47,7 +47,7 @@ class SemiDiscreteEllipsoid {
   SemiDiscreteEllipsoid() : on_(1, tau_), theta_(on_.theta(on_.exact_state(0))) {
     Flow flow = make_flow();
     const Starts starts = [&](double t) { return on_.exact_state(t); };
-    integrate(flow, {5, tau_, 512, {}}, starts(0), starts,
+    integrate(flow, {5, tau_, 512, {}}, {starts(0), starts},
               [&](int, const State& state) { solution_.push_back(state); });
   }
 
@@ -71,7 +71,7 @@ class SemiDiscreteEllipsoid {
         next = solution_[m];
       } else {
         next.t = m * tau_;
-        flow.step(past, std::min(q, past.size()), ratio * tau_, next);
+        flow.step(past.equal_step(std::min(q, past.size()), ratio * tau_, next.t), next);
       }
       largest = std::max(largest, (next.*field - solution_[m].*field).norm());
       past.push(next);

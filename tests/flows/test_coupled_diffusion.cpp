@@ -36,7 +36,7 @@ struct GrowingSphereRun {
 
   State exact_state(double t) const { return exact_growing_sphere_state(space, exact, x0, t); }
 
-  State end(const TimeGrid& grid, Variant variant = {},
+  State end(const UniformSteps& grid, Variant variant = {},
             GrowingSphereProblem::Coupling coupling = GrowingSphereProblem::additive) const {
     const Parameters parameters;
     CoupledDiffusion<GrowingSphereProblem> flow(
@@ -48,7 +48,7 @@ struct GrowingSphereRun {
   /// Errors of a state against the exact solution.
   Errors errors(const State& state) const {
     ErrorRecorder recorder(space, exact, x0);
-    recorder.record(state.t, table_columns(state));
+    recorder.record(state);
     return recorder.maxima();
   }
 
@@ -111,7 +111,7 @@ TEST(GrowingSphere, ErrorsAgreeWithTheIndependentTable) {
 /// Orders in h of x, v, u in the lifted H1 norm, from two meshes with proportion 2:1, at a short time with a
 /// negligible error in time.
 std::vector<double> orders_in_space(int degree, Variant variant) {
-  const TimeGrid grid = {4, 0.01, 10, {}};
+  const UniformSteps grid = {4, 0.01, 10, {}};
   std::vector<Errors> errors;
   for (int subdivisions : {degree > 2 ? 1 : 2, degree > 2 ? 2 : 3}) {
     const GrowingSphereRun run(sphere_mesh(1, degree, subdivisions), default_quadrature(degree));
@@ -196,7 +196,7 @@ TEST(CoupledDiffusionInTime, CascadeOfTheSameStepLosesTheOrder) {
 /// The largest difference of u at t = 0.2 between (7.2) and (2.19), both from exact starting values.
 double difference_of_masses(int subdivisions, int q, int steps) {
   const GrowingSphereRun run(sphere_mesh(1, 2, subdivisions), default_quadrature(2));
-  const TimeGrid grid = {q, 0.2 / steps, steps, {}};
+  const UniformSteps grid = {q, 0.2 / steps, steps, {}};
   return largest(run.end(grid, reassembled).u - run.end(grid).u);
 }
 
@@ -267,7 +267,7 @@ TEST(CoupledDiffusion, WithoutForcesTheSurfaceRestsAndMassesStay) {
 TEST(CoupledDiffusion, SpeciesOfEqualAndDifferentDiffusionDoNotMix) {
   const State start = start_at_rest(4);
   CoupledDiffusion<Growth<4>> together(space(), {-1, 0}, {1, 0, {1, 0.1, 1, 10}}, {});
-  const TimeGrid grid = {2, 0.05, 4, parse_start("cascade")};
+  const UniformSteps grid = {2, 0.05, 4, parse_start("cascade")};
   const Field u = last_state(together, grid, start).u;
   const double D[] = {1, 0.1, 1, 10};
   for (int l = 0; l < 4; ++l) {
@@ -284,7 +284,7 @@ double mass_balance_residual(const Variant& variant) {
   const int q = 3;
   CoupledDiffusion<Growth<2>> flow(space(), {rate, 1}, {1, 1, {1, 0.3}}, variant);
   std::vector<State> states;
-  integrate(flow, {q, tau, 15, parse_start("cascade")}, start_at_rest(2), {},
+  integrate(flow, {q, tau, 15, parse_start("cascade")}, start_at_rest(2),
             [&](int, const State& now) { states.push_back(now); });
 
   const std::vector<double> delta = bdf_delta(q), gamma = bdf_gamma(q);
@@ -382,14 +382,13 @@ TEST(CoupledDiffusion, ParametersAndFieldsOutOfRangeAreInputErrors) {
 TEST(CoupledDiffusion, NodalFieldsHaveTheNamesOfTheSpecies) {
   const auto names = [](const State& state) {
     std::vector<std::string> result;
-    for (const PointField& field : point_fields(state)) result.push_back(field.name);
+    for (const NodalField& field : nodal_fields(state)) result.push_back(field.name);
     return result;
   };
   EXPECT_THAT(names(start_at_rest(1)), ElementsAre("v", "u"));
   const State three = start_at_rest(3);
   EXPECT_THAT(names(three), ElementsAre("v", "u1", "u2", "u3"));
-  EXPECT_EQ(point_fields(three)[2].values, three.u.col(1));
-  EXPECT_EQ(table_columns(three).rightCols(3), three.u);
+  EXPECT_EQ(nodal_fields(three)[2].values, three.u.col(1));
 }
 
 }  // namespace

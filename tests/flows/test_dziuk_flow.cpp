@@ -13,7 +13,7 @@ namespace {
 
 using State = DziukFlow::State;
 
-State run_sphere(const Mesh& mesh, const Quadrature& rule, const TimeGrid& grid) {
+State run_sphere(const Mesh& mesh, const Quadrature& rule, const UniformSteps& grid) {
   const ExactEvolution exact = shrinking_sphere(2);
   const std::function<State(double)> state = [&](double t) {
     return exact_dziuk_state(exact, mesh.nodes, t);
@@ -33,11 +33,11 @@ TEST(DziukFlow, AgreesWithTheIndependentImplementation) {
   EXPECT_LT(largest(end.x - reference.nodal("x")), 1e-12);
   EXPECT_LT(largest(end.v - reference.nodal("v")), 1e-11);
   // A rule that is too weak, another order and another start are seen.
-  const auto deviation = [&](const Quadrature& rule, const TimeGrid& grid) {
+  const auto deviation = [&](const Quadrature& rule, const UniformSteps& grid) {
     return reference.deviation(run_sphere(reference.mesh, rule, grid));
   };
   EXPECT_GT(deviation(conical_quadrature(4), reference.grid), 1e-5);
-  TimeGrid other = reference.grid;
+  UniformSteps other = reference.grid;
   other.order = 3;
   EXPECT_GT(deviation(conical_quadrature(12), other), 1e-4);
   other = reference.grid;
@@ -107,7 +107,7 @@ double growth_of_tangential_motion(const Mesh& mesh, int q, double tau, int step
   for (int displaced : {0, 1}) {
     const Field x0 = mesh.nodes + displaced * displacement;
     const std::function<State(double)> state = [&](double t) { return exact_dziuk_state(exact, x0, t); };
-    integrate(flow, {q, tau, steps, {}}, state(0), state,
+    integrate(flow, {q, tau, steps, {}}, {state(0), state},
               [&](int, const State& now) { x[displaced].push_back(now.x); });
   }
   const auto difference = [&](int n) { return largest(x[1][n] - x[0][n]); };

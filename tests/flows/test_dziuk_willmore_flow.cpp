@@ -225,7 +225,7 @@ TEST(DziukWillmoreFlow, EnergyOfAnEllipsoidDecreasesByWhatIsDissipated) {
   for (const auto curvature : {DziukWillmoreFlow::dziuk, DziukWillmoreFlow::linearised}) {
     DziukWillmoreFlow flow(space, curvature);
     double old_energy = 0;
-    integrate(flow, {1, tau, 30, {}}, dziuk_willmore_state_on(space, mesh.nodes), {},
+    integrate(flow, {1, tau, 30, {}}, dziuk_willmore_state_on(space, mesh.nodes),
               [&](int n, const State& now) {
                 const double new_energy = energy(space, now.x);
                 space.assemble(now.x, M, A);

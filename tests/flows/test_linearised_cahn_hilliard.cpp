@@ -7,7 +7,7 @@
 
 #include "solver/error.hpp"
 #include "solver/flows/linearised_cahn_hilliard.hpp"
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 
@@ -116,7 +116,7 @@ TEST(LinearisedCahnHilliard, IsNearerToTheImplicitSchemeByItsDerivative) {
 
 TEST(LinearisedCahnHilliard, TakesStepsThatExtrapolationDoesNot) {
   Waves waves;
-  const TimeGrid grid{2, 0.05, 100, parse_start("substeps:64")};
+  const UniformSteps grid{2, 0.05, 100, parse_start("substeps:64")};
   LinearisedCahnHilliard linearised = waves.linearised();
   const State end = last_state(linearised, grid, waves.start);
   EXPECT_LT(end.u.cwiseAbs().maxCoeff(), 1.1);
@@ -127,7 +127,7 @@ TEST(LinearisedCahnHilliard, TakesStepsThatExtrapolationDoesNot) {
   double largest = 0;
   CahnHilliard extrapolated = waves.extrapolated();
   try {
-    integrate(extrapolated, grid, waves.start, {},
+    integrate(extrapolated, grid, waves.start,
               [&](int, const State& state) { largest = std::max(largest, state.u.cwiseAbs().maxCoeff()); });
   } catch (const NumericsError&) {
     largest = once;
@@ -141,8 +141,8 @@ TEST(LinearisedCahnHilliard, LosesEnergyWithAdaptiveSteps) {
     double before = once, rise = -once;
     std::vector<double> mass;
     LinearisedCahnHilliard flow = waves.linearised(factor);
-    const AdaptiveRun run =
-        integrate_adaptive(flow, {2, 5, 1e-3, 1e-4, 0}, waves.start, &State::u, [&](int, const State& state) {
+    const StepCount run =
+        integrate(flow, AdaptiveSteps{"u", 2, 5, 1e-3, 1e-4, 0}, waves.start, [&](int, const State& state) {
           const double energy = ginzburg_landau_energy(waves.space, state.x, state.u, epsilon);
           rise = std::max(rise, energy - before);
           before = energy;

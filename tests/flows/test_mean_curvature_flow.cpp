@@ -13,7 +13,7 @@ namespace {
 using State = MeanCurvatureFlow::State;
 using Variant = MeanCurvatureFlow::Variant;
 
-State run_sphere(const Mesh& mesh, const Quadrature& rule, const TimeGrid& grid, Variant variant = {}) {
+State run_sphere(const Mesh& mesh, const Quadrature& rule, const UniformSteps& grid, Variant variant = {}) {
   const ExactEvolution exact = shrinking_sphere(2);
   const std::function<State(double)> state = [&](double t) {
     return exact_mean_curvature_state(exact, mesh.nodes, t);
@@ -23,7 +23,7 @@ State run_sphere(const Mesh& mesh, const Quadrature& rule, const TimeGrid& grid,
   return last_state(flow, grid, state(0), state);
 }
 
-State run_dumbbell(const Mesh& mesh, const Quadrature& rule, const TimeGrid& grid) {
+State run_dumbbell(const Mesh& mesh, const Quadrature& rule, const UniformSteps& grid) {
   const SurfaceSpace space(mesh, rule);
   MeanCurvatureFlow flow(space, {});
   return last_state(flow, grid, mean_curvature_state_on(dumbbell(), mesh.nodes));
@@ -54,13 +54,13 @@ TEST(MeanCurvatureFlow, AgreesWithTheIndependentImplementation) {
 
 TEST(MeanCurvatureFlow, AgreesWithTheIndependentImplementationOnTheDumbbell) {
   const ReferenceCase reference("mcf_dumbbell_kll_bdf2");
-  const auto deviation = [&](int points, const TimeGrid& grid) {
+  const auto deviation = [&](int points, const UniformSteps& grid) {
     return reference.deviation(run_dumbbell(reference.mesh, conical_quadrature(points), grid));
   };
   EXPECT_LT(deviation(12, reference.grid), 1e-11);
   EXPECT_LT(deviation(8, reference.grid), 1e-6);
   EXPECT_GT(deviation(4, reference.grid), 1e-5);
-  TimeGrid substeps = reference.grid;
+  UniformSteps substeps = reference.grid;
   substeps.start = parse_start("substeps:16");
   EXPECT_GT(deviation(12, substeps), 1e-3);
 }
@@ -89,7 +89,7 @@ TEST(MeanCurvatureFlow, StabilisingTermPullsTheNormalToTheSurfaceNormal) {
     variant.stabilise = 10.0 * i;
     MeanCurvatureFlow flow(space, variant);
     State end;
-    integrate(flow, {1, 0.01, 1, {}}, start, {}, [&](int, const State& now) { end = now; });
+    integrate(flow, {1, 0.01, 1, {}}, start, [&](int, const State& now) { end = now; });
     length[i] = end.u.leftCols(3).rowwise().norm().mean();
   }
   EXPECT_NEAR(length[0], 1.1, 2e-3);

@@ -69,7 +69,7 @@ class Surfaces : public testing::TestWithParam<unsigned> {
   const SurfaceSpace space{surface.mesh};
   const Field& x = surface.mesh.nodes;
 
-  TimeGrid grid(int order, double tau, int power, int steps = 4) const {
+  UniformSteps grid(int order, double tau, int power, int steps = 4) const {
     return {order, tau * surface.time(power), steps, parse_start("cascade")};
   }
 
@@ -81,11 +81,11 @@ class Surfaces : public testing::TestWithParam<unsigned> {
 
   /// Values of a quantity of the states of a run.
   template <class Flow, class Quantity>
-  std::vector<double> series(Flow&& flow, const TimeGrid& grid,
+  std::vector<double> series(Flow&& flow, const UniformSteps& grid,
                              const typename std::decay_t<Flow>::State& initial,
                              const Quantity& quantity) const {
     std::vector<double> values;
-    integrate(flow, grid, initial, {}, [&](int, const auto& state) { values.push_back(quantity(state)); });
+    integrate(flow, grid, initial, [&](int, const auto& state) { values.push_back(quantity(state)); });
     return values;
   }
 
@@ -135,7 +135,7 @@ TEST_P(Surfaces, WillmoreEnergyFalls) {
   std::vector<double> of_flow, of_surface;
   WillmoreFlow flow(space, {});
   integrate(flow, grid(2, 1e-4, 4), discrete_willmore_start(space, x, WillmoreFlow::Variant::willmore).state,
-            {}, [&](int, const WillmoreFlow::State& state) {
+            [&](int, const WillmoreFlow::State& state) {
               space.assemble_load<1, 1, 0>(state.x, state.u.col(0), square, load);
               of_flow.push_back(load.sum() / 2);
               curvature.compute(state.x);
@@ -152,7 +152,7 @@ TEST_P(Surfaces, SeparationOfPhasesKeepsTheMassAndLosesEnergy) {
   for (const double tau : {1e-3, 10.0}) {
     PhaseSeparation flow(space, x, epsilon);
     double before = INFINITY;
-    integrate(flow, grid(2, tau, 3, 3), start, {}, [&](int, const CahnHilliardState& state) {
+    integrate(flow, grid(2, tau, 3, 3), start, [&](int, const CahnHilliardState& state) {
       EXPECT_NEAR(state.Mu.sum(), start.Mu.sum(), 1e-10 * std::abs(start.Mu.sum()));
       const double energy = ginzburg_landau_energy(space, x, state.u, epsilon);
       EXPECT_LE(energy, (1 + 1e-6) * before) << tau;
@@ -190,7 +190,7 @@ TEST_P(Surfaces, RotatedNodesGiveTheRotatedResult) {
   const Mat3 rotation = random_rotation(engine);
   const Field rotated = x * rotation.transpose();
   const auto expect_equal = [&](auto&& flow, int order, double tau, int power, const auto& start_on) {
-    const TimeGrid times = grid(order, tau, power, 2);
+    const UniformSteps times = grid(order, tau, power, 2);
     const Field plain = last_state(flow, times, start_on(x)).x,
                 end = last_state(flow, times, start_on(rotated)).x;
     EXPECT_LT(difference(plain, end * rotation), 1e-10);
@@ -215,24 +215,24 @@ TEST_P(Surfaces, RenumberedNodesGiveTheRenumberedResult) {
   mesh.elements = mesh.elements.colwise().reverse().eval();
   const SurfaceSpace other(mesh);
   const auto expect_equal = [&](int order, double tau, int power, const auto& run) {
-    const TimeGrid times = grid(order, tau, power, 2);
+    const UniformSteps times = grid(order, tau, power, 2);
     const Field expected = permutation * run(space, x, times);
     EXPECT_LT(difference(expected, run(other, mesh.nodes, times)), 1e-10);
   };
-  expect_equal(2, 2e-3, 2, [](const SurfaceSpace& space, const Field& x, const TimeGrid& times) {
+  expect_equal(2, 2e-3, 2, [](const SurfaceSpace& space, const Field& x, const UniformSteps& times) {
     MeanCurvatureFlow flow(space, {});
     return last_state(flow, times, discrete_mean_curvature_state(space, x)).x;
   });
-  expect_equal(1, 2e-3, 2, [](const SurfaceSpace& space, const Field& x, const TimeGrid& times) {
+  expect_equal(1, 2e-3, 2, [](const SurfaceSpace& space, const Field& x, const UniformSteps& times) {
     BgnFlow flow(space);
     return last_state(flow, times, bgn_state_on(space, x)).x;
   });
-  expect_equal(2, 1e-4, 4, [](const SurfaceSpace& space, const Field& x, const TimeGrid& times) {
+  expect_equal(2, 1e-4, 4, [](const SurfaceSpace& space, const Field& x, const UniformSteps& times) {
     WillmoreFlow flow(space, {});
     return last_state(flow, times, discrete_willmore_start(space, x, WillmoreFlow::Variant::willmore).state)
         .x;
   });
-  expect_equal(2, 1e-2, 3, [&](const SurfaceSpace& space, const Field& x, const TimeGrid& times) {
+  expect_equal(2, 1e-2, 3, [&](const SurfaceSpace& space, const Field& x, const UniformSteps& times) {
     const double epsilon = 0.3 * surface.size;
     PhaseSeparation flow(space, x, epsilon);
     return last_state(flow, times, disturbed_mixture(space, x, epsilon, 0.2, 0.5, 1)).u;

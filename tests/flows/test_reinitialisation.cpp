@@ -23,7 +23,7 @@ Field nodes_at_the_end(double reinitialise, int q, int steps) {
   MeanCurvatureFlow::State initial = discrete_mean_curvature_state(space, mesh.nodes);
   flow.reinitialise(initial);
   Field x;
-  integrate(flow, {q, 0.08 / steps, steps, parse_start("substeps:16")}, initial, {},
+  integrate(flow, {q, 0.08 / steps, steps, parse_start("substeps:16")}, initial,
             [&](int, const MeanCurvatureFlow::State& state) { x = state.x; });
   return x;
 }

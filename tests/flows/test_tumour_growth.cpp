@@ -15,7 +15,7 @@ struct TumourOnTheUnitSphere : testing::Test {
   Mesh mesh = lagrange_mesh(icosphere(1, 2), 2);
   TumourOnTheUnitSphere() { project_nodes(mesh, sphere(1)); }
 
-  CoupledDiffusionState run(double disturbance, double gamma, const TimeGrid& grid, double D = 10) const {
+  CoupledDiffusionState run(double disturbance, double gamma, const UniformSteps& grid, double D = 10) const {
     const SurfaceSpace space(mesh);
     TumourGrowth::Kinetics kinetics;
     kinetics.gamma = gamma;
@@ -23,7 +23,7 @@ struct TumourOnTheUnitSphere : testing::Test {
     parameters.diffusion[1] = D;
     CoupledDiffusion<TumourGrowth> flow(space, TumourGrowth(kinetics), parameters, {});
     CoupledDiffusionState end;
-    integrate(flow, grid, tumour_growth_state(space, mesh.nodes, kinetics, disturbance), {},
+    integrate(flow, grid, tumour_growth_state(space, mesh.nodes, kinetics, disturbance),
               [&](int, const CoupledDiffusionState& state) { end = state; });
     return end;
   }
@@ -57,7 +57,7 @@ TEST_F(TumourOnTheUnitSphere, KeepsTheSymmetryOfTheUndisturbedState) {
 }
 
 TEST_F(TumourOnTheUnitSphere, FormsAPatternFromASmallDisturbance) {
-  const TimeGrid grid{2, 0.01, 300, parse_start("substeps:8")};
+  const UniformSteps grid{2, 0.01, 300, parse_start("substeps:8")};
   const auto contrast = [](const CoupledDiffusionState& state) {
     return state.u.col(0).maxCoeff() - state.u.col(0).minCoeff();
   };

@@ -46,7 +46,7 @@ void expect_the_length_to_count(const Run& run, double largest_false = 1e-6) {
 TEST(Units, RitzVelocityIsRelativeToTheLength) {
   expect_the_length_to_count([](const SurfaceSpace& space, const Field& x, double length) -> Field {
     MeanCurvatureFlow flow(space, {});
-    const TimeGrid grid{2, 1e-2 * length * length, 3, parse_start("cascade")};
+    const UniformSteps grid{2, 1e-2 * length * length, 3, parse_start("cascade")};
     return last_state(flow, grid, discrete_mean_curvature_state(space, x)).x / length;
   });
 }

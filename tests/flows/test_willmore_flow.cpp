@@ -88,7 +88,7 @@ struct WillmoreRun {
   nlohmann::json json;
   Mesh mesh = read_mesh(independent + "ellipsoid_362.msh").mesh;
   SurfaceSpace space{mesh, conical_quadrature(4)};
-  TimeGrid grid;
+  UniformSteps grid;
 
   explicit WillmoreRun(const std::string& name) : json(read_json(independent + name + ".json")) {
     grid = {json["q"], json["tau"], json["steps"], parse_start("cascade")};
@@ -332,9 +332,9 @@ struct DirectWillmoreFlow {
   WillmoreFlow flow;
   nlohmann::json nothing = flow.progress();
 
-  void step(const History<State>& history, int q, double tau, State& next) {
+  void step(const BdfStep<State>& step, State& next) {
     flow.resume(nothing);
-    flow.step(history, q, tau, next);
+    flow.step(step, next);
   }
 };
 
@@ -343,7 +343,7 @@ TEST(WillmoreFlow, OneFactorisationServesManyStepsWithTheSameResult) {
   Mesh mesh = ellipsoid_mesh({1, 1, 0.9}, 2, 2);
   project_nodes(mesh, surface);
   const SurfaceSpace space(mesh);
-  const TimeGrid grid = {2, 5e-4, 100, parse_start("cascade")};
+  const UniformSteps grid = {2, 5e-4, 100, parse_start("cascade")};
   for (const Variant::Law law : {Variant::willmore, Variant::surface_diffusion}) {
     Variant variant;
     variant.law = law;

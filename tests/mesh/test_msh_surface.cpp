@@ -81,7 +81,7 @@ TEST(OfMeshio, NodalValuesAndCurvedTriangles) {
   const ReadMesh read = read_mesh(sample("of_meshio.msh"));
   EXPECT_EQ(read.mesh.degree, 2);
   ASSERT_EQ(read.fields.size(), 2u);
-  for (const PointField& field : read.fields)
+  for (const NodalField& field : read.fields)
     EXPECT_EQ(field.values, field.name == "nu" ? read.mesh.nodes : Field(Field::Constant(18, 1, 2)));
 }
 

@@ -18,7 +18,7 @@ using testing::StartsWith;
 
 namespace {
 
-std::vector<PointField> fields_on(const Mesh& mesh) {
+NodalFields fields_on(const Mesh& mesh) {
   return {{"H", mesh.nodes.col(0) / 3}, {"two words", mesh.nodes / 7}};
 }
 
@@ -48,7 +48,7 @@ TEST_P(ReadVtuDegrees, GivesTheSameBits) {
   EXPECT_EQ(read.mesh.degree, mesh.degree);
   EXPECT_EQ(read.mesh.nodes, mesh.nodes);
   EXPECT_EQ(read.mesh.elements, mesh.elements);
-  const std::vector<PointField> expected = fields_on(mesh);
+  const NodalFields expected = fields_on(mesh);
   ASSERT_EQ(read.fields.size(), 2u);
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(read.fields[i].name, expected[i].name);

@@ -98,7 +98,7 @@ TEST_F(WriteVtu, RefusesSizesThatDoNotFit) {
   const Mesh mesh = curved_sphere(2);
   const int n = int(mesh.nodes.rows());
   const auto refused = [&](int degree, const Connectivity& elements, const Field& x,
-                           const std::vector<PointField>& fields) {
+                           const NodalFields& fields) {
     return complaint<InputError>([&] { write_vtu(degree, elements, x, fields, label, path("a.vtu")); });
   };
   EXPECT_THAT(refused(5, mesh.elements, mesh.nodes, {}), HasSubstr("degree 5"));

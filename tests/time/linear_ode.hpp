@@ -40,14 +40,22 @@ struct LinearOde {
     return state;
   }
 
-  void step(const History<State>& past, int q, double tau, State& next) {
-    const double delta0 = past.delta(q)[0];
-    past.extrapolate(std::max(1, q - orders_dropped), &State::u, extrapolated);
+  void step(const BdfStep<State>& step, State& next) {
+    const double tau = step.tau, delta0 = step.delta[0];
+    extrapolate(step, extrapolated);
     next.v.row(0) << -extrapolated(0, 1), extrapolated(0, 0);
-    past.bdf_sum(q, &State::u, known);
+    step.known_sum(&State::u, known);
     next.u = (2 * next.v - known / tau) / (delta0 / tau + 1);
-    past.bdf_sum(q, &State::x, known);
+    step.known_sum(&State::x, known);
     next.x = (tau * next.v - known) / delta0;
+  }
+
+  /// By the order of the step, or fewer states where orders are dropped.
+  void extrapolate(const BdfStep<State>& step, Field& u) const {
+    if (orders_dropped == 0) return step.extrapolate(&State::u, u);
+    const std::vector<double> gamma = bdf_gamma(std::max(1, step.order - orders_dropped));
+    u = gamma[0] * step.past(0).u;
+    for (std::size_t j = 1; j < gamma.size(); ++j) u += gamma[j] * step.past(j).u;
   }
 };
 

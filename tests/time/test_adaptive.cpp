@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 #include "tests/time/linear_ode.hpp"
 
 namespace esfem::test_adaptive {
@@ -14,33 +14,29 @@ namespace {
 /// The broken variant: the weights of equal steps whatever the steps are.
 struct EqualStepWeights : LinearOde {
   using State = LinearOde::State;
-  void step(const History<State>& past, int q, double tau, State& next) {
-    History<State> forgetful(q);
-    for (int j = q - 1; j >= 0; --j) {
-      State copy = past.back(j);
-      forgetful.push(copy);
-    }
-    LinearOde::step(forgetful, q, tau, next);
+  void step(const BdfStep<State>& step, State& next) {
+    std::array<const State*, max_bdf_order> past = {};
+    for (int j = 0; j < step.order; ++j) past[j] = &step.past(j);
+    LinearOde::step({step.t, step.tau, step.order, bdf_weights(step.order), past}, next);
   }
 };
 
 struct Result {
   double error = 0, end = 0;
-  AdaptiveRun run;
+  StepCount run;
 };
 
 template <class Flow = LinearOde>
-Result run(const AdaptiveGrid& grid) {
+Result run(const AdaptiveSteps& grid) {
   Flow ode;
   Result result;
   int expected = 0;
-  result.run = integrate_adaptive(
-      ode, grid, LinearOde::exact(0), &LinearOde::State::u, [&](int n, const LinearOde::State& state) {
-        EXPECT_EQ(n, expected++);
-        const LinearOde::State exact = LinearOde::exact(state.t);
-        result.error = std::max({result.error, (state.x - exact.x).norm(), (state.u - exact.u).norm()});
-        result.end = state.t;
-      });
+  result.run = integrate(ode, grid, LinearOde::exact(0), [&](int n, const LinearOde::State& state) {
+    EXPECT_EQ(n, expected++);
+    const LinearOde::State exact = LinearOde::exact(state.t);
+    result.error = std::max({result.error, (state.x - exact.x).norm(), (state.u - exact.u).norm()});
+    result.end = state.t;
+  });
   EXPECT_EQ(result.run.steps, expected - 1);
   return result;
 }
@@ -48,7 +44,7 @@ Result run(const AdaptiveGrid& grid) {
 /// The exponent p of error = C tolerance^p; 0 when no step satisfies the controller.
 template <class Flow = LinearOde>
 double order_in_tolerance(int order) {
-  const auto error = [&](double tolerance) { return run<Flow>({order, 2, tolerance, 1e-6, 0}).error; };
+  const auto error = [&](double tolerance) { return run<Flow>({"u", order, 2, tolerance, 1e-6, 0}).error; };
   try {
     return std::log(error(1e-4) / error(1e-7)) / std::log(1e3);
   } catch (const NumericsError&) {
@@ -67,9 +63,9 @@ TEST(Adaptive, WeightsOfEqualStepsLoseTheOrder) {
 }
 
 TEST(Adaptive, ToleranceIsInUnitsOfTheControlledField) {
-  AdaptiveGrid grid = {2, 2, 1e-5, 1e-6, 0};
+  AdaptiveSteps grid = {"u", 2, 2, 1e-5, 1e-6, 0};
   grid.units.assign(LinearOde::exact(0).u.cols(), 16);
-  const Result in_units = run(grid), plain = run({2, 2, 16e-5, 1e-6, 0});
+  const Result in_units = run(grid), plain = run({"u", 2, 2, 16e-5, 1e-6, 0});
   EXPECT_EQ(in_units.run.steps, plain.run.steps);
   EXPECT_NEAR(in_units.error, plain.error, 1e-10);
   grid.units.push_back(1);
@@ -78,17 +74,17 @@ TEST(Adaptive, ToleranceIsInUnitsOfTheControlledField) {
 
 TEST(Adaptive, EndsAtTheEndTime) {
   for (const double end : {1e-7, 1e-6, 1.5e-6, 0.1, 1.0 / 3, 2.0})
-    for (const double tolerance : {1e-2, 1e-5}) EXPECT_EQ(run({2, end, tolerance, 1e-6, 0}).end, end);
-  EXPECT_EQ(run({2, 0, 1e-3, 1e-6, 0}).run.steps, 0);
-  EXPECT_EQ(run({2, 1, 1, 0.1, 0.1}).run.steps, 10) << "no sliver at the end";
+    for (const double tolerance : {1e-2, 1e-5}) EXPECT_EQ(run({"u", 2, end, tolerance, 1e-6, 0}).end, end);
+  EXPECT_EQ(run({"u", 2, 0, 1e-3, 1e-6, 0}).run.steps, 0);
+  EXPECT_EQ(run({"u", 2, 1, 1, 0.1, 0.1}).run.steps, 10) << "no sliver at the end";
 }
 
 TEST(Adaptive, StepsStayWithinTheirBounds) {
-  const AdaptiveGrid grid = {2, 1, 1e-2, 1e-4, 0.02};
+  const AdaptiveSteps grid = {"u", 2, 1, 1e-2, 1e-4, 0.02};
   std::vector<double> times;
   LinearOde ode;
-  integrate_adaptive(ode, grid, LinearOde::exact(0), &LinearOde::State::u,
-                     [&](int, const LinearOde::State& state) { times.push_back(state.t); });
+  integrate(ode, grid, LinearOde::exact(0),
+            [&](int, const LinearOde::State& state) { times.push_back(state.t); });
   EXPECT_DOUBLE_EQ(times[1], 1e-4);
   double largest = 0;
   for (std::size_t n = 1; n < times.size(); ++n) largest = std::max(largest, times[n] - times[n - 1]);
@@ -98,11 +94,12 @@ TEST(Adaptive, StepsStayWithinTheirBounds) {
 }
 
 TEST(Adaptive, TooLargeStepsAreRejected) {
-  const Result large = run({2, 1, 1e-5, 0.01, 0}), small = run({2, 1, 1e-5, 1e-6, 0});
+  const Result large = run({"u", 2, 1, 1e-5, 0.01, 0}), small = run({"u", 2, 1, 1e-5, 1e-6, 0});
   EXPECT_GE(large.run.rejected, 3);
   EXPECT_EQ(small.run.rejected, 0);
   EXPECT_LT(large.error, 1e-3) << "of the first step, which is not controlled";
-  EXPECT_THROW(run({2, 1, 1e-5, 0.1, 0}), NumericsError) << "after such a first step no step is small enough";
+  EXPECT_THROW(run({"u", 2, 1, 1e-5, 0.1, 0}), NumericsError)
+      << "after such a first step no step is small enough";
 }
 
 /// epsilon u' = cos t - u with u(0) = 2: a layer of width epsilon, then u near cos t.
@@ -119,10 +116,10 @@ struct Layer {
     const double e2 = epsilon * epsilon, start = 2 - 1 / (1 + e2);
     return (std::cos(t) + epsilon * std::sin(t)) / (1 + e2) + start * std::exp(-t / epsilon);
   }
-  void step(const History<State>& past, int q, double tau, State& next) {
-    past.bdf_sum(q, &State::u, known);
-    next.u = (tau / epsilon * Field::Constant(1, 1, std::cos(next.t)) - known) /
-             (past.delta(q)[0] + tau / epsilon);
+  void step(const BdfStep<State>& step, State& next) {
+    step.known_sum(&State::u, known);
+    next.u = (step.tau / epsilon * Field::Constant(1, 1, std::cos(next.t)) - known) /
+             (step.delta[0] + step.tau / epsilon);
   }
 };
 
@@ -131,11 +128,11 @@ TEST(Adaptive, ResolvesAnInitialLayer) {
     Layer layer;
     std::vector<double> times;
     double error = 0;
-    integrate_adaptive(layer, {2, 1, tolerance, 1e-7, 0}, Layer::State{0, Field::Constant(1, 1, 2)},
-                       &Layer::State::u, [&](int, const Layer::State& state) {
-                         times.push_back(state.t);
-                         error = std::max(error, std::abs(state.u(0, 0) - layer.exact(state.t)));
-                       });
+    integrate(layer, AdaptiveSteps{"u", 2, 1, tolerance, 1e-7, 0}, Layer::State{0, Field::Constant(1, 1, 2)},
+              [&](int, const Layer::State& state) {
+                times.push_back(state.t);
+                error = std::max(error, std::abs(state.u(0, 0) - layer.exact(state.t)));
+              });
     return std::make_pair(times, error);
   };
   const auto [times, error] = solve(1e-4);
@@ -150,9 +147,9 @@ struct FailsBeyond : LinearOde {
   using State = LinearOde::State;
   double from = 0.5, smallest_step = 0;
   int failures = 0;
-  void step(const History<State>& past, int q, double tau, State& next) {
-    LinearOde::step(past, q, tau, next);
-    if (next.t < from || tau < smallest_step) return;
+  void step(const BdfStep<State>& step, State& next) {
+    LinearOde::step(step, next);
+    if (next.t < from || step.tau < smallest_step) return;
     ++failures;
     throw SingularityError("element 3 is too thin");
   }
@@ -162,9 +159,8 @@ TEST(Adaptive, AFailedStepIsRepeatedWithHalfItsSize) {
   FailsBeyond flow;
   flow.smallest_step = 0.01;
   double end = 0;
-  const AdaptiveRun run =
-      integrate_adaptive(flow, {2, 0.6, 1, 0.1, 0}, LinearOde::exact(0), &LinearOde::State::u,
-                         [&](int, const LinearOde::State& state) { end = state.t; });
+  const StepCount run = integrate(flow, AdaptiveSteps{"u", 2, 0.6, 1, 0.1, 0}, LinearOde::exact(0),
+                                  [&](int, const LinearOde::State& state) { end = state.t; });
   EXPECT_EQ(end, 0.6);
   EXPECT_GT(flow.failures, 0);
   EXPECT_EQ(run.rejected, flow.failures);
@@ -175,8 +171,8 @@ TEST(Adaptive, AStepThatFailsHoweverSmallItIsEndsTheRun) {
   FailsBeyond flow;
   double last = 0;
   try {
-    integrate_adaptive(flow, {2, 1, 1, 0.01, 0}, LinearOde::exact(0), &LinearOde::State::u,
-                       [&](int, const LinearOde::State& state) { last = state.t; });
+    integrate(flow, AdaptiveSteps{"u", 2, 1, 1, 0.01, 0}, LinearOde::exact(0),
+              [&](int, const LinearOde::State& state) { last = state.t; });
     ADD_FAILURE() << "no error";
   } catch (const SingularityError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("singular at t = 0.5"), HasSubstr("element 3 is too thin")));
@@ -188,8 +184,8 @@ TEST(Adaptive, AStepThatFailsHoweverSmallItIsEndsTheRun) {
 /// u jumps at t = 0.5, which no step size resolves.
 struct Jumps : LinearOde {
   using State = LinearOde::State;
-  void step(const History<State>& past, int q, double tau, State& next) {
-    LinearOde::step(past, q, tau, next);
+  void step(const BdfStep<State>& step, State& next) {
+    LinearOde::step(step, next);
     if (next.t > 0.5) next.u.array() += 10;
   }
 };
@@ -198,8 +194,8 @@ TEST(Adaptive, AnEstimateThatStaysTooLargeIsAnError) {
   using testing::AllOf, testing::HasSubstr;
   Jumps flow;
   try {
-    integrate_adaptive(flow, {2, 1, 1e-2, 0.01, 0}, LinearOde::exact(0), &LinearOde::State::u,
-                       [](int, const LinearOde::State&) {});
+    integrate(flow, AdaptiveSteps{"u", 2, 1, 1e-2, 0.01, 0}, LinearOde::exact(0),
+              [](int, const LinearOde::State&) {});
     ADD_FAILURE() << "no error";
   } catch (const NumericsError& error) {
     EXPECT_THAT(error.what(), AllOf(HasSubstr("t = 0.5"), HasSubstr("estimated error 14.1"),
@@ -218,19 +214,19 @@ TEST(Adaptive, FactorsAreBounded) {
 }
 
 TEST(Adaptive, BadGridsAreErrors) {
-  for (const AdaptiveGrid& grid : {AdaptiveGrid{3, 1, 1e-3, 1e-6, 0},
-                                   {0, 1, 1e-3, 1e-6, 0},
-                                   {2, -1, 1e-3, 1e-6, 0},
-                                   {2, INFINITY, 1e-3, 1e-6, 0},
-                                   {2, 1, 0, 1e-6, 0},
-                                   {2, 1, NAN, 1e-6, 0},
-                                   {2, 1, 1e-3, 0, 0},
-                                   {2, 1, 1e-3, 1e-14, 0},
-                                   {2, 1, 1e-3, 1e-6, 1e-7},
-                                   {2, 1, 1e-3, 1e-6, NAN},
-                                   {2, 1, 1e-3, 1e-6, 0, {1, 0}}})
-    EXPECT_THROW(check_adaptive_grid(grid), InputError);
-  EXPECT_NO_THROW(check_adaptive_grid({1, 0, 1e-3, 1e-6, 1e-6}));
+  for (const AdaptiveSteps& grid : {AdaptiveSteps{"u", 3, 1, 1e-3, 1e-6, 0},
+                                    {"u", 0, 1, 1e-3, 1e-6, 0},
+                                    {"u", 2, -1, 1e-3, 1e-6, 0},
+                                    {"u", 2, INFINITY, 1e-3, 1e-6, 0},
+                                    {"u", 2, 1, 0, 1e-6, 0},
+                                    {"u", 2, 1, NAN, 1e-6, 0},
+                                    {"u", 2, 1, 1e-3, 0, 0},
+                                    {"u", 2, 1, 1e-3, 1e-14, 0},
+                                    {"u", 2, 1, 1e-3, 1e-6, 1e-7},
+                                    {"u", 2, 1, 1e-3, 1e-6, NAN},
+                                    {"u", 2, 1, 1e-3, 1e-6, 0, {1, 0}}})
+    EXPECT_THROW(check_steps(grid), InputError);
+  EXPECT_NO_THROW(check_steps(AdaptiveSteps{"u", 1, 0, 1e-3, 1e-6, 1e-6}));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <limits>
 #include <sstream>
 
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 #include "solver/write_file.hpp"
 #include "tests/time/linear_ode.hpp"
 
@@ -28,7 +28,7 @@ struct Stopped : std::exception {};
 struct Seen {
   int first = 0;
   std::vector<LinearOde::State> states;
-  AdaptiveRun adaptive;
+  StepCount adaptive;
   std::string said;
 };
 
@@ -38,8 +38,8 @@ struct CheckpointedRun : testing::Test {
   json description = {{"experiment", "linear_ode"}, {"parameters", {1, 2.5}}};
   double seconds = 0;
   bool starts_afresh = false;
-  TimeGrid grid = {4, 0.02, 50, {Start::substeps, 4}};
-  AdaptiveGrid adaptive_grid = {2, 1, 1e-3, 1e-3, 0};
+  UniformSteps grid = {4, 0.02, 50, {Start::substeps, 4}};
+  AdaptiveSteps adaptive_grid = {"u", 2, 1, 1e-3, 1e-3, 0};
 
   CheckpointedRun() { fs::create_directories(folder); }
   ~CheckpointedRun() override { fs::remove_all(folder); }
@@ -71,14 +71,13 @@ struct CheckpointedRun : testing::Test {
   Seen uniform(int stop = never) {
     return observed(stop, [&](Checkpoint& checkpoint, auto&& observe, Seen&) {
       LinearOde ode;
-      integrate(ode, grid, LinearOde::exact(0), {}, observe, &checkpoint);
+      integrate(ode, grid, LinearOde::exact(0), &checkpoint, observe);
     });
   }
   Seen adaptive(int stop = never) {
     return observed(stop, [&](Checkpoint& checkpoint, auto&& observe, Seen& seen) {
       LinearOde ode;
-      seen.adaptive = integrate_adaptive(ode, adaptive_grid, LinearOde::exact(0), &LinearOde::State::u,
-                                         observe, &checkpoint);
+      seen.adaptive = integrate(ode, adaptive_grid, LinearOde::exact(0), &checkpoint, observe);
     });
   }
 
@@ -212,7 +211,7 @@ TEST_F(CheckpointedRun, IsNotOfAnotherInitialState) {
       LinearOde ode;
       LinearOde::State initial = LinearOde::exact(0);
       initial.u(0, 1) = u;
-      integrate(ode, grid, initial, {}, observe, &checkpoint);
+      integrate(ode, grid, initial, &checkpoint, observe);
     });
   };
   run(0, 17);
@@ -296,7 +295,7 @@ TEST_F(CheckpointedRun, StaysWhenTheNumericsFail) {
   const auto fail = [&](int n, const LinearOde::State&) {
     if (n == 17) throw NumericsError("");
   };
-  EXPECT_THROW(integrate(ode, grid, LinearOde::exact(0), {}, fail, &checkpoint), NumericsError);
+  EXPECT_THROW(integrate(ode, grid, LinearOde::exact(0), &checkpoint, fail), NumericsError);
   EXPECT_EQ(uniform().first, 17);
 }
 
@@ -320,14 +319,11 @@ TEST_F(CheckpointedRun, RestoresWhatIsAttached) {
     Checkpoint checkpoint(file, description, 0);
     companions.attach_to(checkpoint);
     try {
-      integrate(
-          ode, grid, LinearOde::exact(0), {},
-          [&](int n, const LinearOde::State&) {
-            if (n == stop) throw Stopped();
-            companions.a += 1;
-            companions.b += n;
-          },
-          &checkpoint);
+      integrate(ode, grid, LinearOde::exact(0), &checkpoint, [&](int n, const LinearOde::State&) {
+        if (n == stop) throw Stopped();
+        companions.a += 1;
+        companions.b += n;
+      });
     } catch (const Stopped&) {
     }
   };

@@ -56,17 +56,18 @@ TEST(History, ExtrapolatesAndSumsAQuadratic) {
     State next = constant(value(n * tau));
     history.push(next);
   }
+  const BdfStep<State> step = history.equal_step(3, tau, 4 * tau);
   Field out;
-  history.extrapolate(3, &State::x, out);
+  step.extrapolate(&State::x, out);
   EXPECT_TRUE(out.isApprox(Field::Constant(3, 2, value(4 * tau)), 1e-13));
-  history.extrapolate(2, &State::x, out);
-  EXPECT_FALSE(out.isApprox(Field::Constant(3, 2, value(4 * tau)), 1e-3)) << "order 2 is not exact here";
-  history.bdf_sum(3, &State::x, out);
-  const double derivative = (history.delta(3)[0] * value(4 * tau) + out(0, 0)) / tau;
+  step.known_sum(&State::x, out);
+  const double derivative = (step.delta[0] * value(4 * tau) + out(0, 0)) / tau;
   EXPECT_NEAR(derivative, -1 + 6 * 4 * tau, 1e-12);
+  history.equal_step(2, tau, 4 * tau).extrapolate(&State::x, out);
+  EXPECT_FALSE(out.isApprox(Field::Constant(3, 2, value(4 * tau)), 1e-3)) << "order 2 is not exact here";
 }
 
-TEST(History, AimedAtATimeItIsExactOnUnequalSteps) {
+TEST(History, AStepToATimeIsExactOnUnequalSteps) {
   const auto value = [](double t) { return 2 - t + 3 * t * t; };
   const double times[] = {0, 0.1, 0.13, 0.3}, t = 0.37;
   History<State> history(3);
@@ -75,24 +76,25 @@ TEST(History, AimedAtATimeItIsExactOnUnequalSteps) {
     next.t = s;
     history.push(next);
   }
-  const auto derivative = [&] {
+  const auto derivative = [&](const BdfStep<State>& step) {
     Field out;
-    history.bdf_sum(2, &State::x, out);
-    return (history.delta(2)[0] * value(t) + out(0, 0)) / (t - 0.3);
+    step.known_sum(&State::x, out);
+    return (step.delta[0] * value(t) + out(0, 0)) / (t - 0.3);
   };
-  EXPECT_GT(std::abs(derivative() - (-1 + 6 * t)), 0.03) << "the weights of equal steps";
-  history.aim(2, t);
-  EXPECT_NEAR(derivative(), -1 + 6 * t, 1e-12);
-  history.aim(3, t);
+  EXPECT_GT(std::abs(derivative(history.equal_step(2, t - 0.3, t)) - (-1 + 6 * t)), 0.03)
+      << "the weights of equal steps";
+  EXPECT_NEAR(derivative(history.step_to(t, 2)), -1 + 6 * t, 1e-12);
+  EXPECT_EQ(history.step_to(t, 2).tau, t - 0.3);
+  EXPECT_EQ(&history.step_to(t, 2).past(1), &history.back(1));
   Field out;
-  history.extrapolate(3, &State::x, out);
+  history.step_to(t, 3).extrapolate(&State::x, out);
   EXPECT_TRUE(out.isApprox(Field::Constant(3, 2, value(t)), 1e-13));
-  EXPECT_THROW(history.aim(2, 0.3), InputError);
-  EXPECT_THROW(history.aim(4, t), InputError);
+  EXPECT_THROW(history.step_to(0.3, 2), InputError);
+  EXPECT_THROW(history.step_to(t, 4), InputError);
 }
 
 /// The error at t = 1 of BDF2 on steps that are by turns short and long.
-double error_on_unequal_steps(int pairs, bool aims) {
+double error_on_unequal_steps(int pairs, bool takes_note) {
   LinearOde ode;
   History<LinearOde::State> history(2);
   const double tau = 0.4 / pairs;
@@ -102,19 +104,18 @@ double error_on_unequal_steps(int pairs, bool aims) {
     history.push(next);
   }
   for (int n = 0; n < 2 * pairs; ++n) {
-    const double step = n % 2 == 0 ? tau : 1.5 * tau;
-    next.t = history.back(0).t + step;
-    if (aims) history.aim(2, next.t);
-    ode.step(history, 2, step, next);
+    const double size = n % 2 == 0 ? tau : 1.5 * tau;
+    next.t = history.back(0).t + size;
+    ode.step(takes_note ? history.step_to(next.t, 2) : history.equal_step(2, size, next.t), next);
     history.push(next);
   }
   EXPECT_NEAR(history.back(0).t, 1, 1e-12);
   return (history.back(0).u - LinearOde::exact(1).u).norm();
 }
 
-TEST(History, AimingKeepsTheOrderOnUnequalSteps) {
-  const auto order = [](bool aims) {
-    return std::log2(error_on_unequal_steps(64, aims) / error_on_unequal_steps(256, aims)) / 2;
+TEST(History, AStepToATimeKeepsTheOrderOnUnequalSteps) {
+  const auto order = [](bool takes_note) {
+    return std::log2(error_on_unequal_steps(64, takes_note) / error_on_unequal_steps(256, takes_note)) / 2;
   };
   EXPECT_NEAR(order(true), 2, 0.1);
   EXPECT_LT(order(false), 1.5);
@@ -124,10 +125,10 @@ TEST(History, TooFewStatesAreAnError) {
   History<State> history(3);
   State next = constant(1);
   history.push(next);
-  Field out;
-  EXPECT_THROW(history.extrapolate(2, &State::x, out), InputError);
-  EXPECT_THROW(history.bdf_sum(2, &State::x, out), InputError);
-  EXPECT_THROW(history.delta(4), InputError);
+  EXPECT_NO_THROW(history.equal_step(1, 0.1, 2));
+  EXPECT_THROW(history.equal_step(2, 0.1, 2), InputError);
+  EXPECT_THROW(history.equal_step(0, 0.1, 2), InputError);
+  EXPECT_THROW(history.step_to(2, 2), InputError);
   EXPECT_THROW(History<State>(0), InputError);
   EXPECT_THROW(History<State>(6), InputError);
 }
@@ -137,7 +138,7 @@ TEST(History, ARestartedRunEqualsTheUninterruptedOne) {
   const double tau = 1.0 / steps;
   std::vector<LinearOde::State> states;
   LinearOde ode;
-  integrate(ode, {q, tau, steps, {}}, LinearOde::exact(0), LinearOde::exact,
+  integrate(ode, {q, tau, steps, {}}, {LinearOde::exact(0), LinearOde::exact},
             [&](int, const LinearOde::State& state) { states.push_back(state); });
 
   const auto continued = [&](int states_kept) {
@@ -150,7 +151,7 @@ TEST(History, ARestartedRunEqualsTheUninterruptedOne) {
     LinearOde::State next = states[stop];
     for (int n = stop + 1; n <= steps; ++n) {
       next.t = n * tau;
-      restarted.step(history, std::min(q, history.size()), tau, next);
+      restarted.step(history.equal_step(std::min(q, history.size()), tau, next.t), next);
       history.push(next);
     }
     return history.back(0);

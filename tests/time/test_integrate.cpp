@@ -17,7 +17,7 @@ double max_error(int q, Start start, int steps, int orders_dropped = 0) {
   LinearOde ode;
   ode.orders_dropped = orders_dropped;
   double error = 0;
-  integrate(ode, {q, 1.0 / steps, steps, start}, LinearOde::exact(0), LinearOde::exact,
+  integrate(ode, {q, 1.0 / steps, steps, start}, {LinearOde::exact(0), LinearOde::exact},
             [&](int, const LinearOde::State& state) {
               const LinearOde::State exact = LinearOde::exact(state.t);
               error = std::max({error, (state.x - exact.x).norm(), (state.u - exact.u).norm()});
@@ -84,7 +84,7 @@ TEST(Integrate, ObservesEveryStateAtItsTime) {
       int expected = 0;
       LinearOde::State initial = LinearOde::exact(0);
       initial.t = 7;
-      integrate(ode, {3, 0.1, steps, start}, initial, LinearOde::exact,
+      integrate(ode, {3, 0.1, steps, start}, {initial, LinearOde::exact},
                 [&](int n, const LinearOde::State& state) {
                   EXPECT_EQ(n, expected++);
                   EXPECT_EQ(state.t, n * 0.1);
@@ -98,12 +98,50 @@ TEST(Integrate, OneSubstepIsTheCascade) {
   EXPECT_EQ(max_error(4, {Start::substeps, 1}, 20), max_error(4, cascade, 20));
 }
 
+TEST(Integrate, TakesGivenTimes) {
+  const auto largest_error = [](int order, int steps) {
+    std::vector<double> times = {0};
+    while (static_cast<int>(times.size()) <= steps)
+      times.push_back(times.back() + (times.size() % 2 ? 1.2 : 0.8) / steps);
+    LinearOde ode;
+    double largest = 0;
+    int expected = 0;
+    const StepCount done = integrate(
+        ode, GivenTimes{order, times}, LinearOde::exact(0), [&](int n, const LinearOde::State& state) {
+          EXPECT_EQ(n, expected++);
+          EXPECT_EQ(state.t, times[n]);
+          largest = std::max(largest, (state.u - LinearOde::exact(state.t).u).norm());
+        });
+    EXPECT_EQ(done.steps, steps);
+    return largest;
+  };
+  for (int order : {1, 2})
+    EXPECT_NEAR(std::log2(largest_error(order, 100) / largest_error(order, 200)), order, 0.1);
+  for (const std::vector<double>& bad : {std::vector<double>{}, {0, 1, 1}})
+    EXPECT_THROW(check_steps(GivenTimes{1, bad}), InputError);
+}
+
+TEST(Integrate, CanStartLaterAndAsksEachObserver) {
+  LinearOde ode;
+  std::vector<int> first, second;
+  const auto note = [](std::vector<int>& steps) {
+    return [&steps](int n, const LinearOde::State& state) {
+      EXPECT_DOUBLE_EQ(state.t, 0.1 * (4 + n));
+      EXPECT_LT((state.u - LinearOde::exact(state.t).u).norm(), 0.1);
+      steps.push_back(n);
+    };
+  };
+  integrate(ode, {2, 0.1, 3, {}, 4}, {LinearOde::exact(0.4), LinearOde::exact}, note(first), note(second));
+  EXPECT_EQ(first, (std::vector<int>{0, 1, 2, 3}));
+  EXPECT_EQ(second, first);
+}
+
 /// What a run that is expected to fail says; empty when it does not fail.
 template <class Flow, class Error = NumericsError>
-std::string failure(Flow flow, const TimeGrid& grid,
+std::string failure(Flow flow, const UniformSteps& grid,
                     const std::function<LinearOde::State(double)>& exact_state = LinearOde::exact) {
   try {
-    integrate(flow, grid, LinearOde::exact(0), exact_state, [](int, const auto&) {});
+    integrate(flow, grid, {LinearOde::exact(0), exact_state}, [](int, const auto&) {});
   } catch (const Error& error) {
     return error.what();
   }
@@ -113,8 +151,8 @@ std::string failure(Flow flow, const TimeGrid& grid,
 struct BecomesNonFinite : LinearOde {
   using State = LinearOde::State;
   double from = 0;
-  void step(const History<State>& past, int q, double tau, State& next) {
-    LinearOde::step(past, q, tau, next);
+  void step(const BdfStep<State>& step, State& next) {
+    LinearOde::step(step, next);
     if (next.t >= from) next.v(0, 1) = std::numeric_limits<double>::quiet_NaN();
   }
 };
@@ -138,8 +176,8 @@ TEST(Integrate, NonFiniteValuesAreErrorsWithStepAndTime) {
 struct BecomesSingular : LinearOde {
   using State = LinearOde::State;
   double from = 0;
-  void step(const History<State>& past, int q, double tau, State& next) {
-    LinearOde::step(past, q, tau, next);
+  void step(const BdfStep<State>& step, State& next) {
+    LinearOde::step(step, next);
     if (next.t >= from) throw SingularityError("element 3 is too thin");
   }
 };
@@ -164,15 +202,15 @@ TEST(Integrate, ExactStartNeedsAnExactSolution) {
 }
 
 TEST(Integrate, BadGridsAreErrors) {
-  for (const TimeGrid& grid : {TimeGrid{6, 0.1, 5, {}},
-                               {0, 0.1, 5, {}},
-                               {2, 0, 5, {}},
-                               {2, -1, 5, {}},
-                               {2, std::nan(""), 5, {}},
-                               {2, 0.1, -1, {}},
-                               {2, 0.1, 5, {Start::substeps, 0}}})
-    EXPECT_THROW(check_time_grid(grid), InputError);
-  EXPECT_NO_THROW(check_time_grid({5, 0.1, 0, {}}));
+  for (const UniformSteps& grid : {UniformSteps{6, 0.1, 5, {}},
+                                   {0, 0.1, 5, {}},
+                                   {2, 0, 5, {}},
+                                   {2, -1, 5, {}},
+                                   {2, std::nan(""), 5, {}},
+                                   {2, 0.1, -1, {}},
+                                   {2, 0.1, 5, {Start::substeps, 0}}})
+    EXPECT_THROW(check_steps(grid), InputError);
+  EXPECT_NO_THROW(check_steps(UniformSteps{5, 0.1, 0, {}}));
 }
 
 TEST(Start, ParsesWhatItPrints) {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "solver/time/adaptive.hpp"
+#include "solver/time/integrate.hpp"
 #include "tests/time/linear_ode.hpp"
 
 namespace esfem::test_prolonged_run {
@@ -54,13 +54,13 @@ struct ProlongedRun : testing::Test {
   static constexpr int never = -1;
   Seen uniform(int steps, int last = never) {
     return run(last, [&](LinearOde& ode, auto& observe, Checkpoint* checkpoint) {
-      integrate(ode, {3, 0.02, steps, {Start::substeps, 4}}, LinearOde::exact(0), {}, observe, checkpoint);
+      integrate(ode, {3, 0.02, steps, {Start::substeps, 4}}, LinearOde::exact(0), checkpoint, observe);
     });
   }
   Seen adaptive(double end_time, int last = never) {
     return run(last, [&](LinearOde& ode, auto& observe, Checkpoint* checkpoint) {
-      integrate_adaptive(ode, {2, end_time, 1e-4, 1e-3, 0}, LinearOde::exact(0), &State::u, observe,
-                         checkpoint);
+      integrate(ode, AdaptiveSteps{"u", 2, end_time, 1e-4, 1e-3, 0}, LinearOde::exact(0), checkpoint,
+                observe);
     });
   }
   template <class Run>
@@ -157,7 +157,7 @@ TEST_F(ProlongedRun, AStopAfterTheLastStepIsNone) {
   for (const int steps : {1, 20}) {
     fs::remove(file);
     LinearOde ode;
-    EXPECT_NO_THROW(integrate(ode, {3, 0.02, steps, {Start::substeps, 4}}, LinearOde::exact(0), {},
+    EXPECT_NO_THROW(integrate(ode, {3, 0.02, steps, {Start::substeps, 4}}, LinearOde::exact(0),
                               [&](int n, const State&) { return n < steps; }));
   }
 }

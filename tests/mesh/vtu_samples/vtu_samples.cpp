@@ -29,7 +29,7 @@ Mesh curved_sphere(int degree) {
 }
 
 /// Fields with numbers that only binary files keep.
-std::vector<PointField> sample_fields(const Mesh& mesh) {
+NodalFields sample_fields(const Mesh& mesh) {
   Field H = mesh.nodes.rowwise().sum() / 7, v = -mesh.nodes.array().exp().matrix();
   using Limits = std::numeric_limits<double>;
   H.topRows(4) << Limits::denorm_min(), Limits::max(), -0.0, std::nextafter(1.0, 2.0);

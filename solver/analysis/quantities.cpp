@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/analysis/quantities.hpp"
+
+#include <utility>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+Quantities::Quantities(const SurfaceSpace& space, std::vector<ExactEvolution::Quantity> quantities)
+    : quantities_(std::move(quantities)), space_(space) {}
+
+Field Quantities::columns(const Field& x, NodalFields fields) {
+  const auto is_wanted = [&](const char* name) {
+    for (const ExactEvolution::Quantity& quantity : quantities_)
+      if (quantity.name == name) return true;
+    return false;
+  };
+  if ((is_wanted("nu") || is_wanted("H")) && !(find(fields, "nu") && find(fields, "H"))) {
+    if (!curvature_) curvature_ = std::make_unique<DiscreteCurvature>(space_);
+    curvature_->compute(x);
+    fields.insert(fields.begin(), {{"nu", curvature_->nu()}, {"H", curvature_->H()}});
+  }
+  int count = 0;
+  for (const ExactEvolution::Quantity& quantity : quantities_) count += quantity.components;
+  Field columns(x.rows(), count);
+  int column = 0;
+  for (const auto& [name, components] : quantities_) {
+    const Field* values = find(fields, name);
+    if (!values || values->cols() != components)
+      throw InputError("error table: expected a nodal field " + name + " of " + std::to_string(components) +
+                       " components");
+    columns.middleCols(column, components) = *values;
+    column += components;
+  }
+  return columns;
+}
+
+}  // namespace esfem

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/types.hpp"
+
+namespace esfem {
+
+/// Nodal values and their name in files and tables, N x c.
+struct NodalField {
+  std::string name;
+  Field values;
+};
+using NodalFields = std::vector<NodalField>;
+
+/// The field of that name; nullptr when there is none.
+inline const Field* find(const NodalFields& fields, const std::string& name) {
+  for (const NodalField& field : fields)
+    if (field.name == name) return &field.values;
+  return nullptr;
+}
+
+}  // namespace esfem
