@@ -6,15 +6,12 @@
 
 #include "solver/config.hpp"
 
-#if ESFEM_PACK_SIZE == 8 && !defined(__AVX512F__)
-#error \
-    "esfem was built with AVX-512: compile with its flags (such as -march=native), or build it with ESFEM_NATIVE=OFF"
-#elif ESFEM_PACK_SIZE == 4 && !defined(__AVX__)
-#error \
-    "esfem was built with AVX: compile with its flags (such as -march=x86-64-v3), or build it with ESFEM_NATIVE=OFF"
-#endif
-#if ESFEM_PACK_SIZE == 8
+#ifdef __AVX512F__
 #include <immintrin.h>
+#endif
+#if (ESFEM_PACK_SIZE == 8 && !defined(__AVX512F__)) || (ESFEM_PACK_SIZE == 4 && !defined(__AVX__))
+// GCC warns of each function that returns a Pack, also of those that are always inlined.
+#pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
 namespace esfem {
@@ -23,18 +20,24 @@ namespace esfem {
 /// memory, which is ten times slower. It is no matter of the flags of who includes this, because the library
 /// has to agree.
 constexpr int pack_size = ESFEM_PACK_SIZE;
-static_assert(EIGEN_MAX_ALIGN_BYTES == pack_size * sizeof(double),
-              "Eigen aligns memory as its flags say: compile with the same -m flags as esfem");
+static_assert(
+    EIGEN_MAX_ALIGN_BYTES == pack_size * sizeof(double),
+    "Eigen must align memory as the library does: link the CMake target esfem::esfem, which defines "
+    "EIGEN_MAX_ALIGN_BYTES");
 
 /// One double per element of a batch (8 with AVX-512, 4 with AVX2, 2 with SSE2): arithmetic on a Pack is
 /// arithmetic on the elements of a batch at once, one instruction each. Scalars mix freely (2 * p, p + 1.0).
+///
+/// Compiled without the library's -m flags it is several instructions, and a function returns it in memory
+/// instead of in a register. So no call from one object file to another passes a Pack by value: between them
+/// go references, structs of several Packs, and functions that are always inlined.
 using Pack = double __attribute__((vector_size(pack_size * sizeof(double))));
 
 /// Truth values of comparisons of Packs, -1 or 0.
 using Lanes = long __attribute__((vector_size(pack_size * sizeof(long))));
 
 /// All lanes equal.
-inline Pack pack(double value) {
+[[gnu::always_inline]] inline Pack pack(double value) {
   return Pack{} + value;
 }
 
@@ -44,7 +47,7 @@ using std::exp;
 using std::sin;
 using std::sqrt;
 
-inline Pack sqrt(const Pack& p) {
+[[gnu::always_inline]] inline Pack sqrt(const Pack& p) {
   Pack result;
   for (int lane = 0; lane < pack_size; ++lane) result[lane] = std::sqrt(p[lane]);
   return result;
@@ -52,8 +55,8 @@ inline Pack sqrt(const Pack& p) {
 
 /// 1/sqrt(p) for p > 0, to the last bit or two; with AVX-512 by Newton steps, since the divider is the
 /// bottleneck of a quadrature point.
-inline Pack inverse_sqrt(const Pack& p) {
-#if ESFEM_PACK_SIZE == 8
+[[gnu::always_inline]] inline Pack inverse_sqrt(const Pack& p) {
+#if ESFEM_PACK_SIZE == 8 && defined(__AVX512F__)
   Pack y = _mm512_maskz_rsqrt14_pd(0xff, p);
   for (int step = 0; step < 2; ++step) y += 0.5 * y * (1.0 - p * y * y);
   return y;
@@ -64,19 +67,19 @@ inline Pack inverse_sqrt(const Pack& p) {
 
 /// function(double) -> double lane by lane, for formulas that have no vector form (pow, tanh, ...).
 template <class Function>
-Pack apply(const Function& function, const Pack& p) {
+[[gnu::always_inline]] inline Pack apply(const Function& function, const Pack& p) {
   Pack result;
   for (int lane = 0; lane < pack_size; ++lane) result[lane] = function(p[lane]);
   return result;
 }
 
-inline Pack exp(const Pack& p) {
+[[gnu::always_inline]] inline Pack exp(const Pack& p) {
   return apply([](double value) { return std::exp(value); }, p);
 }
-inline Pack sin(const Pack& p) {
+[[gnu::always_inline]] inline Pack sin(const Pack& p) {
   return apply([](double value) { return std::sin(value); }, p);
 }
-inline Pack cos(const Pack& p) {
+[[gnu::always_inline]] inline Pack cos(const Pack& p) {
   return apply([](double value) { return std::cos(value); }, p);
 }
 
@@ -94,7 +97,7 @@ inline double sum_of_lanes(const Pack& p) {
 }
 
 /// Euclidean product of vectors in space.
-inline Pack dot(const Pack (&a)[3], const Pack (&b)[3]) {
+[[gnu::always_inline]] inline Pack dot(const Pack (&a)[3], const Pack (&b)[3]) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 

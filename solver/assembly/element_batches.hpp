@@ -94,7 +94,7 @@ class ElementBatches {
 
   /// Geometry at a quadrature point. Lanes whose Jacobian is finite and positive relative to the element's
   /// size are true in the result.
-  Lanes evaluate(const Batch& batch, int point, BatchPoint& out) const {
+  [[gnu::always_inline]] Lanes evaluate(const Batch& batch, int point, BatchPoint& out) const {
     for (int i = 0; i < 3; ++i) out.tangent_xi[i] = out.tangent_eta[i] = Pack{};
     const Shape* shape = shapes(point);
     for (int a = 0; a < nodes_; ++a) {

@@ -26,7 +26,9 @@ struct SurfacePoints {
   Pack y[3], normal[3], weingarten[3][3];
 
   /// Entry of P = I - nu nu^T.
-  Pack projection(int i, int j) const { return (i == j ? 1.0 : 0.0) - normal[i] * normal[j]; }
+  [[gnu::always_inline]] Pack projection(int i, int j) const {
+    return (i == j ? 1.0 : 0.0) - normal[i] * normal[j];
+  }
 };
 
 /// The vector of one lane.

@@ -28,8 +28,8 @@ class Prepare(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = folder.name
         for name, text in {**LISTS, "CMakeLists.txt": "", "CMakePresets.json": "", "tests/CMakeLists.txt": "",
-                           "experiments/one.cpp": "", "experiments/harness/grid.hpp": "", "solver/mesh.cpp": "",
-                           "compiler": "12", "user": "0"}.items():
+                           "experiments/CMakeLists.txt": "", "experiments/one.cpp": "",
+                           "experiments/harness/grid.hpp": "", "solver/mesh.cpp": "", "compiler": "12", "user": "0"}.items():
             self.write(name, text)
         self.write("installed", "g++\nlibx-dev\nplotter\ngtest\nbenchmark\n")
         for name, text in PROGRAMS.items():
