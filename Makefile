@@ -34,7 +34,7 @@ stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*
 programs := evolve check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
-.PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu sanitize fuzz crash crash-check \
+.PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu sanitize fuzz crash crash-check consumer-check \
         format format-check samples tables-check verdicts independent plots-check report report-check packages-check packages-check-each gallery \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
@@ -108,8 +108,8 @@ $(stems): %: prepare-%
 	+@$(call run,paper,$@,all)
 
 # Every part of the check runs, and the end says which of them failed. What they read is traced for the last one.
-check_parts := format-check test-library test-plots test-vtu crash-check samples tables-check verdicts independent plots-check \
-               report-check packages-check
+check_parts := format-check test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts independent \
+               plots-check report-check packages-check
 check: build
 	+@failed=""
 	for part in $(check_parts); do
@@ -122,8 +122,8 @@ check: build
 
 # `check` has built what its parts need; a part that is called by itself builds first.
 ifeq ($(MAKELEVEL),0)
-test-library test-plots test-vtu crash-check samples tables-check verdicts independent plots-check report-check \
-  packages-check: build
+test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts independent plots-check \
+  report-check packages-check: build
 endif
 
 # run_tests(folder, options): tests that pass are not listed.
@@ -152,6 +152,11 @@ crash: build
 	@$(PYTHON) tests/crash/crash.py --build $(BUILD) --kills $(or $(KILLS),200)
 crash-check:
 	@$(PYTHON) tests/crash/crash.py --build $(BUILD) --kills 20 --cuts 0 evolve cut
+
+# The library as others use it: installed below the build folder, and found by a project that knows nothing of this one.
+consumer-check:
+	@$(PYTHON) -m unittest discover -q -s tests/consumer
+	$(PYTHON) tests/consumer/check_consumer.py --build $(BUILD)
 
 # Each reader of what others have written is fed with mutations of its corpus. What is found is kept in
 # build-fuzz/corpus; an input that breaks a promise is build-fuzz/TARGET-crash-*, and becomes a file of tests/fuzz/corpus.

@@ -5,7 +5,8 @@ plots and the tests read must belong to a package that apt installs for these li
 
 What is read is seen, not guessed, so a forgotten package is found on a machine that has it installed, too:
 
-* compilers write what they read into dependency files, and link commands name libraries (taken from the build folder);
+* compilers write what they read into dependency files, and link commands name libraries (taken from the build folder,
+  and from that of the library's consumer in it);
 * all the rest (CMake, programs, shared libraries, Python modules) is traced: `make check` runs its parts under strace
   (tests/packages/trace), and this script configures two scratch folders, without tests and benchmarks and with both.
 
@@ -42,8 +43,10 @@ import sys
 RUNS, TESTS = LISTS = ("packages.txt", "packages-tests.txt")
 # Parts of `make check`, by the list that must be enough for them.
 PARTS = {"samples": RUNS, "tables-check": RUNS, "verdicts": RUNS, "independent": RUNS, "plots-check": RUNS,
-         "report-check": RUNS, "test-plots": RUNS, "configure": RUNS, "test-library": TESTS, "format-check": TESTS,
-         "configure-tests": TESTS}
+         "report-check": RUNS, "consumer-check": RUNS, "test-plots": RUNS, "configure": RUNS, "test-library": TESTS,
+         "format-check": TESTS, "configure-tests": TESTS}
+# Where `make consumer-check` builds a project that uses the library.
+CONSUMER = "consumer/build"
 NOBODYS = ("/proc/", "/sys/", "/dev/", "/run/", "/tmp/", "/var/", "/etc/", "/home/", "/usr/share/locale/",
            "/usr/lib/locale/", "/usr/lib/python3/dist-packages/_distutils_hack/")
 FONTS = ("/usr/share/fonts/", "/usr/local/share/fonts/", "/usr/share/texmf/fonts/")
@@ -379,7 +382,10 @@ def judge(arguments):
     apt = Apt(os.path.join(arguments.build, "packages/apt"))
     configure(arguments.build)
     reads, untraced = traces(arguments.build)
-    reads += [*compiled(arguments.build), *linked(arguments.build), *fonts("plots/report.css")]
+    reads += fonts("plots/report.css")
+    consumer = os.path.join(arguments.build, CONSUMER)
+    for folder in [arguments.build] + [consumer] * os.path.exists(consumer):
+        reads += [*compiled(folder), *linked(folder)]
     if untraced:
         notes.append(f"not judged: what runs in {', '.join(untraced)}: no trace; "
                      "`make check` makes it where strace may run")
