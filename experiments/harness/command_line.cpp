@@ -70,6 +70,11 @@ void CommandLine::argument(const std::string& name, std::string& value, const st
   parser_->add(name, value, help)->required()->type_name(type);
 }
 
+void CommandLine::optional_argument(const std::string& name, std::string& value, const std::string& help,
+                                    const std::string& type) {
+  parser_->add(name, value, help)->type_name(type);
+}
+
 void CommandLine::arguments(const std::string& name, std::vector<std::string>& values,
                             const std::string& help) {
   parser_->add(name, values, help)->required();

@@ -25,6 +25,8 @@ class CommandLine {
   /// A positional argument that must be given, one or (strings) at least one; `type` is its name in --help.
   void argument(const std::string& name, std::string& value, const std::string& help,
                 const std::string& type);
+  void optional_argument(const std::string& name, std::string& value, const std::string& help,
+                         const std::string& type);
   void arguments(const std::string& name, std::vector<std::string>& values, const std::string& help);
 
   void flag(const std::string& name, bool& value, const std::string& help);

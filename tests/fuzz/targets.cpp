@@ -7,7 +7,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "experiments/harness/evolve_config.hpp"
+#include "experiments/evolve/config.hpp"
 #include "solver/analysis/claims.hpp"
 #include "solver/analysis/table.hpp"
 #include "solver/error.hpp"

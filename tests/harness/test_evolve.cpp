@@ -263,7 +263,7 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"mesh", {{"subdivisions", nullptr}, {"edge_length", 2}}}}, "edge length 2"},
       {{{"surface", {{"name", "cube"}}}}, "sphere, ellipsoid, torus, dumbbell"},
       {{{"quadrature", {{"gauss", 3}}}}, "known are conical, degree"},
-      {{{"variant", {{"velocity", "exact"}}}}, "ritz or interpolation"},
+      {{{"variant", {{"velocity", "exact"}}}}, "expected one of interpolation, ritz"},
       {{{"variant", {{"normalise", 1}}}}, "true or false"},
       {{{"adaptive", {{"end_time", 1}}}}, "found adaptive and tau"},
       {{{"adaptive", {{"end_time", 1}, {"tol", 1}}}, {"tau", nullptr}, {"steps", nullptr}}, "'tol'"},

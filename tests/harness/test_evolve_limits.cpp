@@ -9,7 +9,7 @@
 #include <map>
 #include <vector>
 
-#include "experiments/harness/evolve_advice.hpp"
+#include "experiments/evolve/advice.hpp"
 #include "solver/constants.hpp"
 #include "solver/mesh/read.hpp"
 #include "tests/harness/evolve_program.hpp"
@@ -158,12 +158,12 @@ TEST_F(EvolveLimits, ACureIsNamedForEveryFlow) {
   EvolveConfig config;
   const auto expect = [&config](int degree, const char* flow, const char* expected) {
     config.mesh.degree = degree;
-    config.flow = flow;
-    EXPECT_THAT(cure(config), StartsWith(expected));
+    config.entry = &entry_named(flow, "", "test");
+    EXPECT_THAT(config.entry->cure(config), StartsWith(expected));
   };
   expect(1, "mean_curvature", "try \"flow\": \"dziuk\" or \"bgn\"; on some meshes even elements (");
   expect(2, "mean_curvature", "try \"flow\": \"dziuk\" or \"bgn\" with \"degree\": 1; on some meshes even");
-  EXPECT_THAT(cure(config), Not(HasSubstr("normalise"))) << "which helps flat elements only";
+  EXPECT_THAT(config.entry->cure(config), Not(HasSubstr("normalise"))) << "which helps flat elements only";
   expect(2, "bgn", "try \"flow\": \"dziuk\" with \"degree\": 1; on some meshes even elements (");
   expect(1, "dziuk", "try \"flow\": \"bgn\"; on some meshes even elements (");
   expect(2, "willmore", "try smaller steps, \"variant\": {\"relaxation\"");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/harness/evolve_files.hpp"
+#include "experiments/evolve/files.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -90,8 +90,8 @@ void prepare_outputs(const EvolveConfig& config, const json& json, const std::st
 json run_identity(const EvolveConfig& config, const json& description) {
   json identity = description;
   // What is compared as it is after reading, or changes no number of a step.
-  for (const char* key :
-       {"output", "tau", "steps", "bdf", "start", "adaptive", "mesh", "degree", "quadrature", "limits"})
+  for (const char* key : {"$schema", "output", "tau", "steps", "bdf", "start", "adaptive", "mesh", "degree",
+                          "quadrature", "limits"})
     identity.erase(key);
   identity["mesh"] = json::array(
       {checksum(bytes_of(config.mesh.elements) + bytes_of(config.mesh.nodes) + bytes_of(config.origin))});

@@ -5,23 +5,19 @@
 #include <optional>
 #include <string>
 
+#include "experiments/evolve/entry.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/fe/quadrature.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
-#include "solver/flows/growing_sphere.hpp"
-#include "solver/flows/mean_curvature_flow.hpp"
-#include "solver/flows/tumour_growth.hpp"
-#include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/mesh.hpp"
 #include "solver/mesh/origin.hpp"
-#include "solver/time/integrate.hpp"
+#include "solver/surfaces/surface.hpp"
+#include "solver/time/steps.hpp"
 
 namespace esfem {
 
 /// What a CONFIG.json of `evolve` asks for, with the defaults filled in.
 struct EvolveConfig {
-  std::string flow;  ///< mean_curvature | dziuk | bgn | coupled_diffusion | willmore | surface_diffusion |
-                     ///< cahn_hilliard
+  const Entry* entry = nullptr;            ///< of flow and problem
   std::optional<Surface> surface;          ///< the exact initial surface, where one is given
   Mesh mesh;                               ///< P_k; on the surface, where there is one
   Vec3 origin = Vec3::Zero();              ///< of the mesh's coordinates in those of its file
@@ -34,26 +30,7 @@ struct EvolveConfig {
   bool start_given = false;               ///< whether grid.start comes from the file
   std::optional<AdaptiveSteps> adaptive;  ///< instead of `grid`, where the file asks for it
   Quadrature rule;
-  MeanCurvatureFlow::Variant mean_curvature;
-  WillmoreFlow::Variant willmore;
-  bool willmore_theta = false;  ///< with the correction (3.7) of kll21
-  struct {
-    enum Problem { ellipsoid, phase_separation } problem = ellipsoid;
-    double epsilon = 0.5;
-    bool theta = false;                                ///< ellipsoid: with the correction (3.13) of bk22
-    StartValues initial = StartValues::interpolation;  ///< ellipsoid
-    double mean = 0, disturbance = 0.1;                ///< phase_separation
-    int seed = 1;
-  } cahn_hilliard;
-  struct Coupled {
-    enum Problem { growing_sphere, tumour_growth } problem = growing_sphere;
-    CoupledDiffusionParameters parameters;
-    CoupledDiffusionVariant variant;
-    GrowingSphereProblem::Coupling coupling = GrowingSphereProblem::additive;  ///< of the growing sphere
-    TumourGrowth::Kinetics kinetics;                                           ///< of the tumour
-    double disturbance = 0.01;                                                 ///< of its steady state
-    int seed = 1;
-  } coupled;
+  Settings variant, parameters;
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
   std::string checkpoint;           ///< a file from which a stopped run goes on; empty: not wanted
   SnapshotPlan snapshots;
@@ -69,5 +46,8 @@ EvolveConfig evolve_config(const nlohmann::json& json, const std::string& source
 
 /// The keys with their defaults, for --help.
 std::string evolve_config_help();
+
+/// The same as JSON Schema (draft 2020-12), by which editors complete and check a configuration.
+nlohmann::json evolve_schema();
 
 }  // namespace esfem

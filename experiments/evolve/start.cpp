@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/harness/evolve_start.hpp"
+#include "experiments/evolve/start.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,16 +15,8 @@ using Names = std::vector<std::string>;
 
 /// What a run can start from: sets of nodal values, which the file must have as a whole.
 std::vector<Names> possible_starts(const EvolveConfig& config) {
-  using Coupled = EvolveConfig::Coupled;
-  if (config.flow == "coupled_diffusion" && config.coupled.problem == Coupled::tumour_growth)
-    return {{"u1", "u2"}, {"v"}};
-  if (config.flow == "cahn_hilliard" && config.cahn_hilliard.problem == config.cahn_hilliard.phase_separation)
-    return {{"u"}, {"u", "w"}};
-  if (config.surface) return {};
-  if (config.flow == "mean_curvature") return {{"nu", "H"}};
-  if (config.flow == "willmore" || config.flow == "surface_diffusion")
-    return {{"nu", "H"}, {"nu", "H", "V", "z"}};
-  return {};
+  if (config.surface && !config.entry->starts_beside_surface) return {};
+  return config.entry->starts;
 }
 
 const NodalField* field_named(const EvolveConfig& config, const std::string& name) {
@@ -94,34 +86,11 @@ Field start_values(const EvolveConfig& config, const Names& names) {
   return values;
 }
 
-std::optional<MeanCurvatureFlow::State> mean_curvature_state_in_file(const EvolveConfig& config) {
-  const Field nu_H = start_values(config, {"nu", "H"});
-  if (nu_H.size() == 0) return {};
-  return mean_curvature_state(0, config.mesh.nodes, nu_H.leftCols(3), nu_H.col(3));
-}
-
-std::optional<WillmoreStart> willmore_start_in_file(const EvolveConfig& config, const SurfaceSpace& space) {
-  const Field nu_H = start_values(config, {"nu", "H"}), all = start_values(config, {"nu", "H", "V", "z"});
-  if (nu_H.size() == 0) return {};
-  Field u(nu_H.rows(), 4);
-  u << nu_H.col(3), nu_H.leftCols(3);
-  const Field w = all.size() > 0 ? Field(all.rightCols(4)) : Field();
-  return willmore_start_from(space, config.mesh.nodes, std::move(u), w, config.willmore.law);
-}
-
-std::optional<CahnHilliardState> mixture_in_file(const EvolveConfig& config, const SurfaceSpace& space) {
-  const Field u = start_values(config, {"u"}), u_w = start_values(config, {"u", "w"});
-  if (u.size() == 0) return {};
-  const Field& x = config.mesh.nodes;
-  return u_w.size() > 0 ? cahn_hilliard_state(space, 0, x, u, u_w.col(1))
-                        : cahn_hilliard_start(space, DoubleWell(), config.cahn_hilliard.epsilon, 0, x, u);
-}
-
-std::optional<CoupledDiffusionState> tumour_in_file(const EvolveConfig& config, const SurfaceSpace& space) {
-  const Field u = start_values(config, {"u1", "u2"}), v = start_values(config, {"v"});
-  if (u.size() == 0) return {};
-  const Field& x = config.mesh.nodes;
-  return coupled_diffusion_state(space, 0, x, v.size() > 0 ? v : Field(Field::Zero(x.rows(), 3)), u);
+void require_unit_sphere(const EvolveConfig& config, const std::string& what) {
+  if (config.surface && config.surface->name == "sphere" && config.surface->parameters.at("radius") == 1)
+    return;
+  throw InputError(
+      what + " starts from the unit sphere; expected \"surface\": {\"name\": \"sphere\", \"radius\": 1}");
 }
 
 std::string start_remark(const EvolveConfig& config) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/harness/evolve_mesh.hpp"
+#include "experiments/evolve/mesh.hpp"
 
 #include "solver/error.hpp"
 #include "solver/mesh/curve.hpp"

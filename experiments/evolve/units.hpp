@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "experiments/harness/evolve_config.hpp"
+#include "experiments/evolve/config.hpp"
 #include "solver/analysis/json_reader.hpp"
 
 namespace esfem {

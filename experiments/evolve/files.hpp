@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/harness/evolve_config.hpp"
+#include "experiments/evolve/config.hpp"
 
 namespace esfem {
 

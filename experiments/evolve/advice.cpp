@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/harness/evolve_advice.hpp"
+#include "experiments/evolve/advice.hpp"
 
 #include <algorithm>
 
 #include "solver/error.hpp"
+#include "solver/flows/regularity.hpp"
 
 namespace esfem {
 
@@ -18,20 +19,12 @@ std::string thin_elements_remark(const Mesh& mesh, const MeshOrigin& origin) {
       expected);
 }
 
-namespace {
-
-double reinitialise(const EvolveConfig& config) {
-  return config.flow == "mean_curvature" ? config.mean_curvature.reinitialise : config.willmore.reinitialise;
-}
-
-}  // namespace
-
 bool have_parted(const EvolveConfig& config, const RunRecorder::CurvatureComparison& found) {
   const double bound = 0.25;
   if (found.rate_difference() > bound) return true;
   if (found.energy_difference() > (config.mesh.degree == 1 ? 2 * bound : bound)) return true;
   return found.deviation > bound &&
-         reinitialise(config) == 0;  // what comes from the surface has not parted from it
+         !config.variant.has("reinitialise");  // what comes from the surface has not parted from it
 }
 
 std::string curvature_remark(const RunRecorder::CurvatureComparison& found, double t) {
@@ -54,38 +47,27 @@ std::string sliding_remark(const Series& series) {
       taken, area[0], expected);
 }
 
-std::string curvature_cure(const EvolveConfig& config) {
-  const std::string mesh =
-      "a mesh that resolves the curvature (a finer one; \"curve\", \"remesh\" of a mesh file)";
-  if (config.flow == "mean_curvature")
-    return "try \"variant\": {\"reinitialise\": 0.05}, \"flow\": \"dziuk\", or " + mesh;
-  return "try \"variant\": {\"relaxation\": ..} or {\"reinitialise\": 0.05}, or " + mesh;
-}
-
 std::string extinction(double end, const Series& series) {
   const std::vector<double>& area = series.at("area");
   return format("extinct at t = %g: of the area %g is left of %g at the start, and none there", end,
                 area.back(), area.front());
 }
 
-std::string cure(const EvolveConfig& config) {
-  const bool curved = config.mesh.degree > 1;
-  const std::string degree = curved ? " with \"degree\": 1" : "";
-  const std::string steps = config.adaptive ? "a smaller tolerance and first_step" : "smaller steps";
-  const std::string mesh = "even elements (\"remesh\" of a mesh file)";
-  // Of 125 closed meshes that are about, each runs with one of these flows.
-  if (config.flow == "mean_curvature")
-    return "try \"flow\": \"dziuk\" or \"bgn\"" + degree + "; on some meshes " + mesh +
-           (curved ? " " : ", \"variant\": {\"normalise\": true} ") + "or " + steps + " are enough";
-  // In its first step, however small, this flow slides its nodes.
-  if (config.flow == "bgn")
-    return "try \"flow\": \"dziuk\"" + degree + "; on some meshes " + mesh + " are enough";
-  if (config.flow == "dziuk")
-    return "try \"flow\": \"bgn\"" + degree + "; on some meshes " + mesh + " or " + steps +
-           " with \"bdf\": 1 are enough";
-  if (config.flow == "willmore" || config.flow == "surface_diffusion")
-    return "try " + steps + ", \"variant\": {\"relaxation\": ..}, or " + mesh;
-  return "try " + steps + ", or " + mesh;
+Key reinitialise_key() {
+  return {Key::positive, "reinitialise", nullptr,
+          "nu and H are taken anew from the surface when H nu differs by more than this in L2, such as 0.05"};
+}
+
+std::string linear_elements(const EvolveConfig& config) {
+  return config.mesh.degree > 1 ? " with \"degree\": 1" : "";
+}
+
+std::string smaller_steps(const EvolveConfig& config) {
+  return config.adaptive ? "a smaller tolerance and first_step" : "smaller steps";
+}
+
+std::string smaller_steps_or_even_elements(const EvolveConfig& config) {
+  return "try " + smaller_steps(config) + ", or " + even_elements;
 }
 
 }  // namespace esfem

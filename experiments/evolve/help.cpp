@@ -1,30 +1,68 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "experiments/harness/evolve_config.hpp"
+#include "experiments/evolve/config.hpp"
 #include "solver/surfaces/named.hpp"
 
 namespace esfem {
+namespace {
+
+/// "ritz" | "interpolation"
+std::string values_of(const Key& key) {
+  if (key.kind != Key::word) return key.otherwise.is_null() ? "none" : key.otherwise.dump();
+  std::string words;
+  for (const std::string& word : key.words) words += (words.empty() ? "\"" : " | \"") + word + "\"";
+  return words;
+}
+
+std::string unit_of(int length_power) {
+  return length_power == 0 ? "" : length_power == 1 ? " L" : " L^" + std::to_string(length_power);
+}
+
+std::string lines_of(const char* object, const std::vector<Key>& keys) {
+  std::string text;
+  for (const Key& key : keys) {
+    std::string line = std::string("      ") + (&key == &keys.front() ? object : "");
+    line.resize(21, ' ');
+    line += "\"" + key.name + "\": " + values_of(key) + unit_of(key.length_power);
+    line.resize(std::max<std::size_t>(line.size() + 2, 52), ' ');
+    text += line + key.help + "\n";
+  }
+  return text;
+}
+
+std::string starts_of(const Entry& entry) {
+  std::string text;
+  for (const std::vector<std::string>& names : entry.starts) {
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    text += (text.empty() ? "" : "; or ") + list;
+  }
+  if (text.empty()) return "";
+  return "      starts from    " + text + " of the mesh file" +
+         (entry.starts_beside_surface ? "" : ", without \"surface\"") + "\n";
+}
+
+std::string help_of(const Entry& entry) {
+  std::string text = "  \"" + entry.flow + "\"";
+  if (!entry.problem.empty()) text += ", \"problem\": \"" + entry.problem + "\"";
+  text += ": " + entry.help + "\n";
+  if (!entry.fields.empty()) text += "      nodal fields   " + entry.fields + "\n";
+  if (entry.highest_order == 1)
+    text += "      bdf            1\n";
+  else if (entry.order_on_files != entry.order)
+    text += "      bdf            without \"surface\" 1 by default\n";
+  if (entry.time_power != 2)
+    text += "      times          in units of L^" + std::to_string(entry.time_power) + "\n";
+  return text + lines_of("variant", entry.variant) + lines_of("parameters", entry.parameters) +
+         starts_of(entry);
+}
+
+}  // namespace
 
 std::string evolve_config_help() {
-  return R"(CONFIG.json (keys without a default must be given; unknown keys are errors):
-  {"flow": "mean_curvature"                   kll19 (5.1): evolution equations for nu and H
-         | "dziuk"                            Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5
-         | "bgn"                              Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good
-         | "coupled_diffusion"                nick18 (2.19)-(2.21): moved by what diffuses on the surface
-         | "willmore" | "surface_diffusion"   kll21 (3.4)-(3.5): V = Delta H + Q; surface diffusion: Q = 0
-         | "cahn_hilliard",                   bk22 (8.3) on a surface that moves with a given velocity
-   "problem": "growing_sphere"                coupled_diffusion: nick18 7.3, from the unit sphere (default)
-            | "ellipsoid"                     cahn_hilliard: exp(-6t) x1 x2 on an ellipsoid that starts as the unit sphere
-                                              (default)
-            | "phase_separation"              cahn_hilliard: a disturbed mixture on any surface, at rest; implicit, for
-                                              steps of any size: where the energy would rise, a step is replaced by
-                                              smaller ones of backward Euler
-            | "tumour_growth",                activator and substrate (Schnakenberg) on any surface, from a disturbed
-                                              steady state
-   "parameters": {"alpha": 1, "beta": 1}      growing_sphere
-               | {"epsilon": 0.5}             ellipsoid
-               | {"epsilon": 0.5 L, "mean": 0, "disturbance": 0.1, "seed": 1},                 phase_separation
-               | {"alpha": 1 L^2, "epsilon": 0.01, "D": 10, "a": 0.1, "b": 0.9, "gamma": 30/L^2, "delta": 0.4/L,
-                  "disturbance": 0.01, "seed": 1},                                             tumour_growth
+  std::string flows;
+  for (const Entry& entry : entries()) flows += help_of(entry);
+  return R"(CONFIG.json (keys without a default must be given; unknown keys are errors; evolve --schema prints them for editors):
+  {"flow": "mean_curvature", "problem": .., "variant": {..}, "parameters": {..},   see Flows
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
    "mesh": {"file": "a.msh",                  .msh, .off, .obj, .ply, .stl, .vtu of evolve (plots/convert_mesh.py converts other
                                               files): closed, of one or several parts; seams, polygons and orientation are
@@ -48,16 +86,6 @@ std::string evolve_config_help() {
                 "largest_step": 0.01},        default: no bound
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere, angenent_torus), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
-   "variant": {"velocity": "ritz" | "interpolation", "normalise": false, "stabilise": 0, "reinitialise": 0.05},
-                                              mean_curvature; reinitialise: nu and H are taken anew from the surface when
-                                              H nu differs by more than this in L2 (default: never; see below)
-            {"mass": "extrapolated" | "reassembled", "law": "regularised" | "dynamic",
-             "coupling": "additive" | "quotient" | "none"},   coupled_diffusion; coupling: growing_sphere
-            {"F": "extrapolated" | "implicit", "project": true, "theta": true, "relaxation": 0, "reinitialise": 0.05},
-                                              willmore, surface_diffusion; reinitialise: as for mean_curvature;
-                                              theta: the correction (3.7), default false without "surface"; relaxation:
-                                              1/time, towards the geometry of the surface, times tau at most 0.2
-            {"theta": false, "initial": "interpolation" | "ritz"},  ellipsoid
    "limits": {"curvature_size": 5,            singular is more |H| times edge than this (or 4 times that of the start),
               "radius_ratio": 0.01,           an element's radius ratio below this (or the smallest of the start squared;
               "normal_length": 4},            no limit where that is < 0.01), |nu| or 1/|nu| of a flow's nu beyond this
@@ -66,20 +94,19 @@ std::string evolve_config_help() {
               "checkpoint": "run.checkpoint", the same command goes on from it; see below
               "every": 10,                    at every 10th step (default 0: none of these)
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
-Units: what is given has those of the data. Defaults and tolerances are relative to L, the power of ten next to
-sqrt(area/(4 pi)) of the initial surface: 1 for sizes of 0.32 to 3.2. Times have the unit T = L^2; L^3 for phase_separation
-(mobility 1, epsilon a length), L^4 for willmore and surface_diffusion. tumour_growth: alpha L^2, gamma 1/L^2, delta 1/L,
-epsilon and D none (the activator's diffusion is 1). The waves of a disturbance have wave numbers up to 4/L, in
+Flows, the first problem of each is its default; with the defaults of their keys:
+)" + flows +
+         R"(Units: what is given has those of the data. Defaults and tolerances are relative to L, the power of ten next to
+sqrt(area/(4 pi)) of the initial surface: 1 for sizes of 0.32 to 3.2. Times have the unit T = L^2;
+where a flow says so, another power (phase_separation: mobility 1, epsilon a length). The waves of a disturbance have wave numbers up to 4/L, in
 phase_separation the mean 0, and phases about the origin, on a mesh without "surface" about its centroid.
 Surfaces and their defaults:
 )" + named_surfaces_help() +
-         R"(Output: nodal has t, x, v and what else the flow has (mean_curvature: nu, H; bgn: H; coupled_diffusion: u, or u1, u2;
-willmore, surface_diffusion: nu, H, V, z; cahn_hilliard: u, w) of the last step, one row a node; the nodes of the mesh
+         R"(Output: nodal has t, x, v and what else the flow has (see Flows) of the last step, one row a node; the nodes of the mesh
 file come first, in its order. elements are the rows of the nodes of each element, counted from 0 (corners, then the nodes
 of the edges 01, 12, 20, then inner ones); node_numbers, where they are not 1, 2, .., the file's own of its nodes.
-A run starts from the nodal values of its mesh file ($NodeData of .msh, point data of .vtu) that have these names: nu
-and H, with V and z (mean_curvature, willmore, surface_diffusion; without "surface"), u with w (phase_separation), u1 and
-u2 with v (tumour_growth), and says so; t starts at 0, and defaults are relative to the length of this surface: to go on
+A run starts from the nodal values of its mesh file ($NodeData of .msh, point data of .vtu) that have the names listed
+there, and says so; t starts at 0, and defaults are relative to the length of this surface: to go on
 with the parameters of the run before, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
 (degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
 willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and

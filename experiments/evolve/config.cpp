@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/config.hpp"
+
+#include <algorithm>
+
+#include "experiments/evolve/mesh.hpp"
+#include "experiments/evolve/units.hpp"
+#include "solver/analysis/json_reader.hpp"
+#include "solver/error.hpp"
+#include "solver/fe/lagrange.hpp"
+#include "solver/surfaces/named.hpp"
+
+namespace esfem {
+
+namespace {
+
+using nlohmann::json;
+
+double positive_or(const JsonReader& reader, const std::string& key, double otherwise) {
+  const double value = reader.number_or(key, otherwise);
+  if (value > 0) return value;
+  throw InputError(
+      format("%s: found %s = %g; expected a positive number", reader.where().c_str(), key.c_str(), value));
+}
+
+/// The order of BDF where none is given.
+int standard_order(const JsonReader& whole, const Entry& entry) {
+  return whole.has("surface") ? entry.order : entry.order_on_files;
+}
+
+/// Adaptive steps stand in the place of tau, steps and start.
+AdaptiveSteps adaptive_grid(const JsonReader& whole, const Entry& entry) {
+  if (!entry.takes_adaptive_steps)
+    throw InputError(whole.where() + ": problem " + entry.problem +
+                     " takes equal steps; expected tau and steps");
+  for (const char* key : {"tau", "steps", "start"}) {
+    if (whole.has(key))
+      throw InputError(whole.where() + ": found adaptive and " + key + "; expected one of them");
+  }
+  const JsonReader reader(whole.object("adaptive"), whole.where() + ": adaptive");
+  reader.accept_only({"end_time", "tolerance", "first_step", "largest_step"});
+  AdaptiveSteps grid;
+  const int highest = std::min(2, entry.highest_order);
+  grid.order = whole.integer_within("bdf", std::min(highest, standard_order(whole, entry)), 1, highest);
+  grid.end_time = reader.number("end_time");
+  grid.tolerance = positive_or(reader, "tolerance", grid.tolerance);
+  grid.first_step = positive_or(reader, "first_step", grid.first_step);
+  if (reader.has("largest_step")) grid.largest_step = positive_or(reader, "largest_step", 0);
+  if (reader.has("first_step") && grid.end_time > 0 && grid.first_step >= grid.end_time)
+    throw InputError(
+        format("%s: found first_step = %g, which is not controlled, and end_time = %g; expected a "
+               "first step that is smaller",
+               reader.where().c_str(), grid.first_step, grid.end_time));
+  return grid;
+}
+
+UniformSteps time_grid(const JsonReader& reader, const Entry& entry) {
+  UniformSteps grid;
+  grid.order = reader.integer_within("bdf", standard_order(reader, entry), 1, entry.highest_order);
+  grid.tau = reader.number("tau");
+  grid.steps = reader.integer_within("steps", 0, 0, 100000000);
+  if (!(grid.tau > 0)) {
+    throw InputError(
+        format("%s: found tau = %g; expected a positive step size", reader.where().c_str(), grid.tau));
+  }
+  if (reader.has("start")) grid.start = parse_start(reader.text("start"));
+  return grid;
+}
+
+Quadrature quadrature(const json& description, const std::string& where) {
+  const JsonReader reader(description, where);
+  const std::string key = reader.only_key({"conical", "degree"});
+  return key == "conical" ? conical_quadrature(reader.integer("conical"))
+                          : symmetric_quadrature(reader.integer("degree"));
+}
+
+/// What is given under "variant" or "parameters", where the flow has such keys.
+Settings settings(const JsonReader& reader, const std::string& key, const std::vector<Key>& known,
+                  const Entry& entry) {
+  const std::string where = reader.where() + ": " + key;
+  if (!reader.has(key)) return Settings(json::object(), known, where);
+  if (known.empty()) {
+    const std::string name = entry.problem.empty() ? "flow " + entry.flow : "problem " + entry.problem;
+    throw InputError(reader.where() + ": " + name + " has no " + (key == "variant" ? "variants" : key) +
+                     "; expected no key " + key);
+  }
+  return Settings(reader.object(key), known, where);
+}
+
+/// "limits": the bounds beyond which a run is singular.
+void read_limits(const JsonReader& reader, EvolveConfig& config) {
+  reader.accept_only({"curvature_size", "radius_ratio", "normal_length"});
+  const auto read = [&](const char* key, double low, std::optional<double>& limit) {
+    if (!reader.has(key)) return;
+    limit = reader.number(key);
+    if (!(*limit > low))
+      throw InputError(format("%s: found %s = %g; expected a number greater than %g", reader.where().c_str(),
+                              key, *limit, low));
+  };
+  read("curvature_size", 0, config.limits.curvature_size);
+  read("radius_ratio", -1, config.limits.radius_ratio);
+  read("normal_length", 1, config.limits.normal_length);
+}
+
+/// Empty when the key is not there.
+std::string file_name(const JsonReader& output, const std::string& key) {
+  if (!output.has(key)) return "";
+  if (!output.text(key).empty()) return output.text(key);
+  throw InputError(output.where() + ": found " + key + " = \"\"; expected the name of a file");
+}
+
+/// "every" and "times" of the output; they need "vtu".
+SnapshotPlan snapshot_plan(const JsonReader& output) {
+  SnapshotPlan plan;
+  plan.pvd = file_name(output, "vtu");
+  plan.every = output.integer_within("every", 0, 0, 100000000);
+  if (output.has("times")) {
+    for (const json& time : output.array("times")) {
+      if (!time.is_number()) output.wrong_type("times", "an array of numbers", time);
+      plan.times.push_back(time);
+    }
+  }
+  if (plan.pvd.empty() && (output.has("every") || output.has("times"))) {
+    throw InputError(output.where() +
+                     ": every and times are about snapshots; expected the key vtu beside them");
+  }
+  return plan;
+}
+
+}  // namespace
+
+EvolveConfig evolve_config(const json& description, const std::string& source) {
+  const JsonReader reader(description, source);
+  EvolveConfig config;
+  reader.accept_only({"$schema", "flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start",
+                      "quadrature", "variant", "output", "problem", "parameters", "adaptive", "limits"});
+  const Entry& entry =
+      entry_named(reader.text("flow"), reader.has("problem") ? reader.text("problem") : "", source);
+  config.entry = &entry;
+  if (reader.has("adaptive"))
+    config.adaptive = adaptive_grid(reader, entry);
+  else
+    config.grid = time_grid(reader, entry);
+  config.start_given = reader.has("start");
+  if (reader.has("limits")) read_limits(JsonReader(reader.object("limits"), source + ": limits"), config);
+  if (reader.has("output")) {
+    const JsonReader output(reader.object("output"), source + ": output");
+    output.accept_only({"nodal", "series", "vtu", "every", "times", "checkpoint"});
+    config.nodal = file_name(output, "nodal");
+    config.series = file_name(output, "series");
+    config.checkpoint = file_name(output, "checkpoint");
+    config.snapshots = snapshot_plan(output);
+  }
+  if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
+  config.variant = settings(reader, "variant", entry.variant, entry);
+  config.parameters = settings(reader, "parameters", entry.parameters, entry);
+  if (entry.check) entry.check(config, source);
+  std::optional<int> degree;
+  if (reader.has("degree")) degree = reader.integer_within("degree", 0, 1, max_degree);
+  const JsonReader mesh(reader.object("mesh"), source + ": mesh");
+  if (mesh.has("file") && is_snapshot_of(mesh.text("file"), config.snapshots.pvd))
+    throw InputError(
+        source + ": output: found vtu = \"" + config.snapshots.pvd +
+        "\", but the mesh is one of its snapshots, which a new run removes; expected another name");
+  EvolveMesh initial = evolve_mesh(mesh, degree, config.surface);
+  config.mesh = std::move(initial.start.mesh);
+  config.mesh_remarks = std::move(initial.remarks);
+  config.fields = std::move(initial.start.fields);
+  config.node_numbers = std::move(initial.start.node_numbers);
+  config.mesh_origin = std::move(initial.start.origin);
+  const int k = config.mesh.degree;
+  config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
+                : entry.lumps_linear_elements && k == 1 ? vertex_quadrature()
+                                                        : default_quadrature(k);
+  move_near_origin(config);
+  scale_defaults(reader, config);
+  return config;
+}
+
+}  // namespace esfem

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `evolve` knows of a flow. A flow, or a problem of one, is an entry; the parser, --help, --schema, the
+// dispatch and the list in the README follow from it.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "experiments/evolve/settings.hpp"
+#include "solver/time/bdf.hpp"
+
+namespace esfem {
+
+struct EvolveConfig;
+struct Run;
+
+struct Entry {
+  std::string flow;          ///< its name in configurations
+  std::string problem = "";  ///< "": the flow has one alone, without a name
+  std::string help;          ///< one line
+  std::string fields;        ///< nodal fields of the output beside x and v
+  std::vector<Key> variant = {}, parameters = {};
+
+  /// Completes the run: makes flow and initial state, and calls run_flow (run_flow.hpp).
+  std::function<void(const Run&)> run;
+  /// Throws InputError for what the keys alone do not show; `source` heads the message. None: nothing.
+  std::function<void(const EvolveConfig&, const std::string& source)> check = {};
+
+  int highest_order = max_bdf_order;
+  int order = 3, order_on_files = 3;  ///< of BDF where none is given; on a mesh file without a surface
+  bool takes_adaptive_steps = true;
+  int time_power = 2;  ///< times have the unit L to this power
+
+  /// Sets of nodal values of a mesh file that a run can start from, as a whole; beside an exact surface, too.
+  std::vector<std::vector<std::string>> starts = {};
+  bool starts_beside_surface = false;
+
+  bool evolves_curvature = false;  ///< nu and H, which can part from those of the surface
+  bool can_shrink_to_nothing = false;
+  bool is_mean_curvature_flow = false;  ///< which has a longest possible life
+  bool slides_nodes = false;            ///< in its first step
+  bool records_kappa_energy = false;    ///< in the series
+  bool lumps_linear_elements = false;   ///< takes the vertices as quadrature points by default
+
+  /// What to try when nu and H have parted from the surface, and when a run has ended at a singularity.
+  std::string curvature_cure = "";
+  std::function<std::string(const EvolveConfig&)> cure = {};
+};
+
+/// All entries; those of a flow stand together, and the first is its default problem.
+const std::vector<Entry>& entries();
+
+/// That of a configuration's "flow" and "problem" (empty: not given). Throws InputError, which lists what
+/// there is, for names that no entry has.
+const Entry& entry_named(const std::string& flow, const std::string& problem, const std::string& source);
+
+// One for each file of this folder that describes flows.
+std::vector<Entry> mean_curvature_entries();
+std::vector<Entry> dziuk_entries();
+std::vector<Entry> bgn_entries();
+std::vector<Entry> willmore_entries();
+std::vector<Entry> coupled_diffusion_entries();
+std::vector<Entry> cahn_hilliard_entries();
+
+}  // namespace esfem

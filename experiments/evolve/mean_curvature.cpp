@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/advice.hpp"
+#include "experiments/evolve/run_flow.hpp"
+#include "experiments/evolve/start.hpp"
+
+namespace esfem {
+namespace {
+
+MeanCurvatureFlow::Variant mean_curvature_variant(const Settings& asked) {
+  using Variant = MeanCurvatureFlow::Variant;
+  Variant variant;
+  variant.velocity = asked.is("velocity", "ritz") ? Variant::ritz : Variant::interpolation;
+  variant.normalise = asked.truth("normalise");
+  variant.stabilise = asked.number("stabilise");
+  variant.reinitialise = asked.number_or("reinitialise", 0);
+  return variant;
+}
+
+void run_mean_curvature(const Run& run) {
+  using State = MeanCurvatureFlow::State;
+  const EvolveConfig& config = run.config;
+  const Field& x0 = config.mesh.nodes;
+  const std::optional<ExactEvolution> exact = exact_mean_curvature_solution(config);
+  std::function<State(double)> exact_state;
+  if (exact) exact_state = [&](double t) { return exact_mean_curvature_state(*exact, x0, t); };
+  State initial = config.surface ? mean_curvature_state_on(*config.surface, x0)
+                                 : discrete_mean_curvature_state(run.space, x0);
+  if (const Field nu_H = start_values(config, {"nu", "H"}); nu_H.size() > 0)
+    initial = mean_curvature_state(0, x0, nu_H.leftCols(3), nu_H.col(3));
+  MeanCurvatureFlow flow(run.space, mean_curvature_variant(config.variant), limits_of(run));
+  flow.reinitialise(initial);
+  run_flow(flow, run, initial, exact_state);
+}
+
+std::string mean_curvature_cure(const EvolveConfig& config) {
+  const bool curved = config.mesh.degree > 1;
+  return "try \"flow\": \"dziuk\" or \"bgn\"" + linear_elements(config) + "; on some meshes " +
+         even_elements + (curved ? " " : ", \"variant\": {\"normalise\": true} ") + "or " +
+         smaller_steps(config) + " are enough";
+}
+
+}  // namespace
+
+std::vector<Entry> mean_curvature_entries() {
+  Entry entry;
+  entry.flow = "mean_curvature";
+  entry.help = "kll19 (5.1): evolution equations for nu and H";
+  entry.fields = "nu, H";
+  entry.variant = {
+      word("velocity", {"ritz", "interpolation"}, "v_h: Ritz projection of -H_h nu_h, or its nodal values"),
+      {Key::truth, "normalise", false, "nu_h to unit length in the nodes after each step"},
+      {Key::not_negative, "stabilise", 0, "alpha of kll19 §14, 1/time"},
+      reinitialise_key()};
+  entry.run = run_mean_curvature;
+  entry.starts = {{"nu", "H"}};
+  entry.evolves_curvature = entry.can_shrink_to_nothing = entry.is_mean_curvature_flow = true;
+  entry.curvature_cure =
+      "try \"variant\": {\"reinitialise\": 0.05}, \"flow\": \"dziuk\", or " + resolving_mesh;
+  entry.cure = mean_curvature_cure;
+  return {entry};
+}
+
+}  // namespace esfem

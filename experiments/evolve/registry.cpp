@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <set>
+
+#include "experiments/evolve/entry.hpp"
+#include "solver/analysis/json_reader.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> all = [] {
+    std::vector<Entry> list;
+    for (const auto& of_file : {mean_curvature_entries, dziuk_entries, bgn_entries, willmore_entries,
+                                coupled_diffusion_entries, cahn_hilliard_entries})
+      for (Entry& entry : of_file()) list.push_back(std::move(entry));
+    return list;
+  }();
+  return all;
+}
+
+const Entry& entry_named(const std::string& flow, const std::string& problem, const std::string& source) {
+  std::set<std::string> flows, problems;
+  for (const Entry& entry : entries()) {
+    flows.insert(entry.flow);
+    if (entry.flow != flow) continue;
+    if (problem.empty() || problem == entry.problem) return entry;
+    problems.insert(entry.problem);
+  }
+  if (flows.count(flow) == 0)
+    throw InputError(source + ": found flow = \"" + flow + "\"; expected one of " + listed(flows));
+  if (problems == std::set<std::string>{""})
+    throw InputError(source + ": flow " + flow + " has none; expected no key problem");
+  throw InputError(source + ": found problem = \"" + problem + "\"; expected one of " + listed(problems));
+}
+
+}  // namespace esfem

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/run_flow.hpp"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "experiments/evolve/advice.hpp"
+#include "experiments/harness/stop_signal.hpp"
+#include "experiments/harness/warn.hpp"
+#include "solver/analysis/diagnostics.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+
+std::optional<ExactEvolution> exact_mean_curvature_solution(const EvolveConfig& config) {
+  if (!config.surface) return {};
+  const auto& name = config.surface->name;
+  const auto& parameters = config.surface->parameters;
+  if (name == "sphere") return shrinking_sphere(parameters.at("radius"));
+  if (name == "angenent_torus") return shrinking_angenent_torus(parameters.at("scale"));
+  return {};
+}
+
+RegularityLimits limits_of(const Run& run, double size_of_u) {
+  const auto& asked = run.config.limits;
+  RegularityLimits limits = limits_from_start(run.space, run.config.mesh.nodes);
+  if (asked.curvature_size) limits.curvature_size = *asked.curvature_size;
+  if (asked.radius_ratio) limits.radius_ratio = *asked.radius_ratio;
+  if (asked.normal_length) limits.normal_length = *asked.normal_length;
+  if (size_of_u > 0) limits.field_size = 1e3 * size_of_u;
+  return limits;
+}
+
+void compare_curvature(const Run& run) {
+  if (!run.remark.empty() || !run.config.entry->evolves_curvature) return;
+  const auto found = run.recorder.compare_curvature();
+  if (!found || !have_parted(run.config, *found)) return;
+  run.remark = curvature_remark(*found, run.recorder.newest().t);
+  warn(run.remark + "; " + run.config.entry->curvature_cure);
+}
+
+namespace {
+
+void look_at_first_step(const Run& run) {
+  if (!run.config.entry->slides_nodes) return;
+  run.remark = sliding_remark(run.recorder.series());
+  warn(run.remark);
+}
+
+void require_area(const Run& run) {
+  if (!run.config.entry->can_shrink_to_nothing) return;
+  const Series& series = run.recorder.series();
+  std::optional<double> end = extinction_time(series);
+  if (run.config.entry->is_mean_curvature_flow) {
+    const double latest = latest_end_of_mean_curvature_flow(series);
+    if (series.at("t").back() >= latest) end = latest;
+  }
+  if (end) throw ExtinctionError(extinction(*end, series));
+}
+
+double end_time(const EvolveConfig& config) {
+  return config.adaptive ? config.adaptive->end_time : config.grid.steps * config.grid.tau;
+}
+
+}  // namespace
+
+bool look_at_step(const Run& run, int n, double t) {
+  const EvolveConfig& config = run.config;
+  if (n == 1) look_at_first_step(run);
+  if (n % steps_between_comparisons == 0) compare_curvature(run);
+  require_area(run);
+  if (!config.adaptive && n == config.grid.steps) run.recorder.finish();
+  static const bool terminal = isatty(STDERR_FILENO);
+  const double end = end_time(config);
+  if (terminal) std::fprintf(stderr, "\rstep %d, t = %g of %g%s", n, t, end, t >= end ? "\n" : "");
+  return stop_signal() == 0;
+}
+
+UniformSteps steps_of(const Run& run, bool has_exact_solution) {
+  UniformSteps steps = run.config.grid;
+  if (!run.config.start_given && !has_exact_solution) steps.start = parse_start("substeps:16");
+  return steps;
+}
+
+void record_more(const Run& run, const CahnHilliardState& state) {
+  Series& series = run.recorder.series();
+  series["mass"].push_back(state.Mu.sum());
+  series["energy"].push_back(
+      ginzburg_landau_energy(run.space, state.x, state.u, run.config.parameters.number("epsilon")));
+}
+
+}  // namespace esfem

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "experiments/evolve/config.hpp"
+#include "solver/fe/lagrange.hpp"
+
+namespace esfem {
+namespace {
+
+using nlohmann::json;
+
+json described(json schema, const std::string& help) {
+  schema["description"] = help;
+  return schema;
+}
+
+json object_of(const json& properties) {
+  return {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
+}
+
+json schema_of(const Key& key) {
+  json schema = {{"description", key.help}};
+  switch (key.kind) {
+  case Key::truth:
+    schema["type"] = "boolean";
+    break;
+  case Key::word:
+    schema["enum"] = key.words;
+    break;
+  case Key::seed:
+    schema.update({{"type", "integer"}, {"minimum", 0}, {"maximum", 1000000}});
+    break;
+  case Key::positive:
+    schema.update({{"type", "number"}, {"exclusiveMinimum", 0}});
+    break;
+  case Key::not_negative:
+    schema.update({{"type", "number"}, {"minimum", 0}});
+    break;
+  case Key::number:
+    schema["type"] = "number";
+    break;
+  }
+  if (!key.otherwise.is_null() && key.length_power == 0) schema["default"] = key.otherwise;
+  return schema;
+}
+
+json schema_of(const std::vector<Key>& keys) {
+  json properties = json::object();
+  for (const Key& key : keys) properties[key.name] = schema_of(key);
+  return object_of(properties);
+}
+
+/// What "variant", "parameters" and "bdf" may be for one entry.
+json rule_of(const Entry& entry, bool is_default) {
+  json is = {{"properties", {{"flow", {{"const", entry.flow}}}}}, {"required", {"flow"}}};
+  json then = {{"variant", schema_of(entry.variant)}, {"parameters", schema_of(entry.parameters)}};
+  then["bdf"] = {{"maximum", entry.highest_order}};
+  if (entry.problem.empty()) {
+    then["problem"] = false;
+  } else {
+    is["properties"]["problem"] = {{"const", entry.problem}};
+    if (!is_default) is["required"].push_back("problem");
+  }
+  if (!entry.takes_adaptive_steps) then["adaptive"] = false;
+  return {{"if", is}, {"then", {{"properties", then}}}};
+}
+
+/// The keys that all flows have.
+json common_properties() {
+  const json positive = {{"type", "number"}, {"exclusiveMinimum", 0}}, text = {{"type", "string"}};
+  const auto integer = [](int low, int high) {
+    return json{{"type", "integer"}, {"minimum", low}, {"maximum", high}};
+  };
+  const json mesh = {
+      {"file", described(text, "a mesh file")},
+      {"remesh", described(positive, "flat triangles made anew with edges of about this length")},
+      {"curve",
+       {{"description", "nodes on a smooth surface through the corners"},
+        {"anyOf", {{{"type", "boolean"}}, object_of({{"feature_angle", {{"type", "number"}}}})}}}},
+      {"edge_length", described(positive, "largest edge of a generated mesh")},
+      {"subdivisions", described(integer(0, 10), "of an icosahedron")}};
+  const json adaptive = {{"end_time", {{"type", "number"}, {"minimum", 0}}},
+                         {"tolerance", positive},
+                         {"first_step", positive},
+                         {"largest_step", positive}};
+  const json output = {{"nodal", described(text, "nodal values at the end, JSON")},
+                       {"series", described(text, "what is recorded of each step, JSON")},
+                       {"vtu", described(text, "snapshots for ParaView, .pvd")},
+                       {"checkpoint", described(text, "the same command goes on from it")},
+                       {"every", described(integer(0, 100000000), "snapshots at every n-th step")},
+                       {"times", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+  const json limits = {{"curvature_size", positive},
+                       {"radius_ratio", {{"type", "number"}, {"exclusiveMinimum", -1}}},
+                       {"normal_length", {{"type", "number"}, {"exclusiveMinimum", 1}}}};
+  return {{"$schema", text},
+          {"surface",
+           {{"type", "object"},
+            {"description", "exact initial surface and its parameters"},
+            {"properties", {{"name", text}}},
+            {"required", {"name"}}}},
+          {"mesh", object_of(mesh)},
+          {"degree", described(integer(1, max_degree), "of the finite elements")},
+          {"bdf", described(integer(1, max_bdf_order), "order of the backward difference formula")},
+          {"tau", described(positive, "step size")},
+          {"steps", described(integer(0, 100000000), "end time = steps tau")},
+          {"start", {{"type", "string"}, {"pattern", "^(exact|cascade|substeps:[1-9][0-9]*)$"}}},
+          {"adaptive", described(object_of(adaptive), "instead of tau, steps and start")},
+          {"quadrature", object_of({{"conical", integer(1, 20)}, {"degree", integer(1, 20)}})},
+          {"limits", object_of(limits)},
+          {"output", object_of(output)}};
+}
+
+}  // namespace
+
+json evolve_schema() {
+  json properties = common_properties(), rules = json::array(), flows = json::array(),
+       problems = json::array();
+  for (const Entry& entry : entries()) {
+    const bool is_first = std::find(flows.begin(), flows.end(), entry.flow) == flows.end();
+    if (is_first) flows.push_back(entry.flow);
+    if (!entry.problem.empty()) problems.push_back(entry.problem);
+    rules.push_back(rule_of(entry, is_first));
+  }
+  properties["flow"] = {{"enum", flows}};
+  properties["problem"] = {{"enum", problems}};
+  properties["variant"] = properties["parameters"] = {{"type", "object"}};
+  json schema = object_of(properties);
+  schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
+  schema["title"] = "Configuration of evolve";
+  schema["required"] = {"flow", "mesh"};
+  schema["allOf"] = rules;
+  return schema;
+}
+
+}  // namespace esfem

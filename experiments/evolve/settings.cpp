@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "solver/analysis/json_reader.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+using nlohmann::json;
+
+json number(const JsonReader& reader, const Key& key) {
+  const double value = reader.number(key.name);
+  const bool is_good = key.kind == Key::positive ? value > 0 : key.kind != Key::not_negative || value >= 0;
+  if (is_good) return value;
+  throw InputError(format("%s: found %s = %g; expected %s", reader.where().c_str(), key.name.c_str(), value,
+                          key.kind == Key::positive ? "a positive number" : "a number >= 0"));
+}
+
+json word(const JsonReader& reader, const Key& key) {
+  const std::string value = reader.text(key.name);
+  if (std::find(key.words.begin(), key.words.end(), value) != key.words.end()) return value;
+  throw InputError(reader.where() + ": found " + key.name + " = \"" + value + "\"; expected one of " +
+                   listed({key.words.begin(), key.words.end()}));
+}
+
+json value_of(const JsonReader& reader, const Key& key) {
+  switch (key.kind) {
+  case Key::truth:
+    return reader.truth_or(key.name, false);
+  case Key::seed:
+    return reader.integer_within(key.name, 0, 0, 1000000);
+  case Key::word:
+    return word(reader, key);
+  default:
+    return number(reader, key);
+  }
+}
+
+}  // namespace
+
+Settings::Settings(const json& given, const std::vector<Key>& keys, const std::string& where) {
+  const JsonReader reader(given, where);
+  std::set<std::string> known;
+  for (const Key& key : keys) known.insert(key.name);
+  reader.accept_only(known);
+  for (const Key& key : keys) {
+    if (reader.has(key.name)) {
+      values_[key.name] = value_of(reader, key);
+    } else if (!key.otherwise.is_null()) {
+      values_[key.name] = key.otherwise;
+      defaults_.push_back(key);
+    }
+  }
+}
+
+void Settings::scale_defaults(double L) {
+  for (const Key& key : defaults_)
+    if (key.length_power != 0) values_[key.name] = number(key.name) * std::pow(L, key.length_power);
+}
+
+}  // namespace esfem

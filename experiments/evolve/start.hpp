@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "experiments/evolve/config.hpp"
+
+namespace esfem {
+
+/// The nodal values of the mesh file under these names, side by side (N x ..), where the run starts from
+/// them; else empty: the file does not have them all, the flow does not evolve them, or they come from an
+/// exact surface. Throws InputError for values that are not finite, have other than the flow's number of
+/// components, and normals that do not belong to the surface.
+Field start_values(const EvolveConfig& config, const std::vector<std::string>& names);
+
+/// Throws InputError, headed by `what`, unless the surface is the unit sphere.
+void require_unit_sphere(const EvolveConfig& config, const std::string& what);
+
+/// Which nodal values of the mesh file the run starts from, and which it does not use; "" without any.
+std::string start_remark(const EvolveConfig& config);
+
+}  // namespace esfem

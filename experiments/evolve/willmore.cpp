@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/advice.hpp"
+#include "experiments/evolve/run_flow.hpp"
+#include "experiments/evolve/start.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+namespace {
+
+using Variant = WillmoreFlow::Variant;
+
+Variant willmore_variant(const Settings& asked, Variant::Law law) {
+  Variant variant;
+  variant.law = law;
+  variant.F = asked.is("F", "extrapolated") ? Variant::extrapolated : Variant::implicit;
+  variant.project = asked.truth("project");
+  variant.relaxation = asked.number("relaxation");
+  variant.reinitialise = asked.number_or("reinitialise", 0);
+  return variant;
+}
+
+/// theta needs exact data, and is on where there are such.
+bool has_theta(const EvolveConfig& config) {
+  return config.variant.has("theta") ? config.variant.truth("theta") : config.surface.has_value();
+}
+
+void check_theta(const EvolveConfig& config, const std::string& source) {
+  if (has_theta(config) && !config.surface)
+    throw InputError(
+        source + ": variant: theta needs exact initial data; expected a \"surface\", or \"theta\": false");
+}
+
+WillmoreStart willmore_start(const Run& run, Variant::Law law) {
+  const EvolveConfig& config = run.config;
+  const Field& x0 = config.mesh.nodes;
+  const Field nu_H = start_values(config, {"nu", "H"}), all = start_values(config, {"nu", "H", "V", "z"});
+  if (nu_H.size() > 0) {
+    Field u(nu_H.rows(), 4);
+    u << nu_H.col(3), nu_H.leftCols(3);
+    const Field w = all.size() > 0 ? Field(all.rightCols(4)) : Field();
+    return willmore_start_from(run.space, x0, std::move(u), w, law);
+  }
+  return config.surface ? willmore_start_on(run.space, *config.surface, x0, law, has_theta(config))
+                        : discrete_willmore_start(run.space, x0, law);
+}
+
+Entry willmore_entry(Variant::Law law) {
+  Entry entry;
+  entry.fields = "nu, H, V, z";
+  entry.variant = {
+      word("F", {"extrapolated", "implicit"}, "F(x, u) w of (3.5a)"),
+      {Key::truth, "project", true,
+       "nu_h to unit length, z_h to the tangent plane, in the nodes after each step"},
+      {Key::truth, "theta", nullptr, "the correction (3.7); default: true with a \"surface\", false without"},
+      {Key::not_negative, "relaxation", 0,
+       "1/time, towards the geometry of the surface; times tau at most 0.2"},
+      reinitialise_key()};
+  entry.run = [law](const Run& run) {
+    WillmoreStart start = willmore_start(run, law);
+    WillmoreFlow flow(run.space, willmore_variant(run.config.variant, law), start.theta, limits_of(run));
+    flow.reinitialise(start.state);
+    run_flow(flow, run, start.state);
+  };
+  entry.check = check_theta;
+  entry.time_power = 4;
+  entry.starts = {{"nu", "H"}, {"nu", "H", "V", "z"}};
+  entry.evolves_curvature = entry.records_kappa_energy = true;
+  entry.curvature_cure =
+      "try \"variant\": {\"relaxation\": ..} or {\"reinitialise\": 0.05}, or " + resolving_mesh;
+  entry.cure = [](const EvolveConfig& config) {
+    return "try " + smaller_steps(config) + ", \"variant\": {\"relaxation\": ..}, or " + even_elements;
+  };
+  return entry;
+}
+
+}  // namespace
+
+std::vector<Entry> willmore_entries() {
+  Entry willmore = willmore_entry(Variant::willmore),
+        surface_diffusion = willmore_entry(Variant::surface_diffusion);
+  willmore.flow = "willmore";
+  willmore.help = "kll21 (3.4)-(3.5): V = Delta H + Q, which decreases 1/2 int H²";
+  surface_diffusion.flow = "surface_diffusion";
+  surface_diffusion.help = "kll21 (3.4)-(3.5) with Q = 0: V = Delta H, which keeps the volume";
+  return {willmore, surface_diffusion};
+}
+
+}  // namespace esfem

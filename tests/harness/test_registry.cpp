@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "experiments/evolve/config.hpp"
+#include "solver/error.hpp"
+
+namespace esfem::test_registry {
+namespace {
+
+using nlohmann::json;
+using testing::AllOf, testing::Contains, testing::HasSubstr;
+
+/// The message of the error that a configuration of these flow, variant and parameters meets; "" without one.
+std::string refusal(const json& keys) {
+  json description = {
+      {"mesh", {{"subdivisions", 1}}}, {"surface", {{"name", "sphere"}, {"radius", 1}}}, {"tau", 0.1}};
+  description.update(keys);
+  try {
+    evolve_config(description, "file");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Registry, EachFlowAndProblemIsThereOnceAndSaysWhatItIs) {
+  std::set<std::pair<std::string, std::string>> seen;
+  for (const Entry& entry : entries()) {
+    EXPECT_TRUE(seen.insert({entry.flow, entry.problem}).second) << entry.flow;
+    EXPECT_FALSE(entry.help.empty()) << entry.flow;
+    EXPECT_TRUE(entry.run) << entry.flow;
+    EXPECT_TRUE(entry.cure) << entry.flow;
+    EXPECT_EQ(&entry_named(entry.flow, entry.problem, ""), &entry);
+    EXPECT_LE(entry.order, entry.highest_order) << entry.flow;
+    EXPECT_LE(entry.order_on_files, entry.highest_order) << entry.flow;
+  }
+}
+
+TEST(Registry, ANameThatNoEntryHasReachesNoRun) {
+  EXPECT_THAT(
+      refusal({{"flow", "mean_curvatur"}}),
+      AllOf(HasSubstr("found flow = \"mean_curvatur\""), HasSubstr("bgn, cahn_hilliard, coupled_diffusion")));
+  EXPECT_THAT(refusal({{"flow", ""}}), HasSubstr("expected one of"));
+  EXPECT_THAT(refusal({{"flow", "coupled_diffusion"}, {"problem", "growing"}}),
+              HasSubstr("expected one of growing_sphere, tumour_growth"));
+  EXPECT_THAT(refusal({{"flow", "dziuk"}, {"problem", "growing_sphere"}}),
+              HasSubstr("expected no key problem"));
+  for (const Entry& entry : entries()) EXPECT_NE(refusal({{"flow", entry.flow + "x"}}), "");
+}
+
+TEST(Registry, EveryKeyIsReadAndCheckedWhereItBelongs) {
+  for (const Entry& entry : entries()) {
+    json flow = {{"flow", entry.flow}};
+    if (!entry.problem.empty()) flow["problem"] = entry.problem;
+    EXPECT_EQ(refusal(flow), "") << flow;
+    for (const auto& [object, keys] :
+         {std::pair("variant", &entry.variant), {"parameters", &entry.parameters}}) {
+      json bad = flow;
+      bad[object] = {{"no_such_key", 1}};
+      EXPECT_NE(refusal(bad), "") << bad;
+      for (const Key& key : *keys) {
+        bad[object] = {{key.name, json::array()}};
+        EXPECT_THAT(refusal(bad), HasSubstr(key.name)) << bad;
+        json good = flow;
+        good[object] = {{key.name, key.kind == Key::truth  ? json(true)
+                                   : key.kind == Key::word ? json(key.words.back())
+                                                           : json(1)}};
+        EXPECT_EQ(refusal(good), "") << good;
+        if (key.kind != Key::positive && key.kind != Key::not_negative) continue;
+        good[object][key.name] = -1;
+        EXPECT_THAT(refusal(good), HasSubstr(key.name + " = -1")) << good;
+      }
+    }
+  }
+}
+
+TEST(Registry, HelpAndSchemaKnowEveryKey) {
+  const std::string help = evolve_config_help();
+  const json schema = evolve_schema();
+  for (const Entry& entry : entries()) {
+    EXPECT_THAT(help, HasSubstr("\"" + entry.flow + "\""));
+    EXPECT_THAT(schema["properties"]["flow"]["enum"], Contains(entry.flow));
+    const auto rule = std::find_if(schema["allOf"].begin(), schema["allOf"].end(), [&](const json& rule) {
+      const json& is = rule["if"]["properties"];
+      return is["flow"]["const"] == entry.flow &&
+             (entry.problem.empty() || is["problem"]["const"] == entry.problem);
+    });
+    ASSERT_NE(rule, schema["allOf"].end());
+    for (const Key& key : entry.variant) {
+      EXPECT_THAT(help, HasSubstr("\"" + key.name + "\": "));
+      EXPECT_TRUE((*rule)["then"]["properties"]["variant"]["properties"].contains(key.name)) << key.name;
+    }
+    for (const Key& key : entry.parameters)
+      EXPECT_TRUE((*rule)["then"]["properties"]["parameters"]["properties"].contains(key.name)) << key.name;
+  }
+  EXPECT_EQ(refusal({{"flow", "dziuk"}, {"$schema", "evolve.schema.json"}}), "");
+}
+
+TEST(Registry, TheReadmeListsTheFlows) {
+  std::ifstream file(std::string(ESFEM_SOURCE_DIR) + "/README.md");
+  std::stringstream text;
+  text << file.rdbuf();
+  for (const Entry& entry : entries()) EXPECT_THAT(text.str(), HasSubstr("`" + entry.flow + "`"));
+}
+
+}  // namespace
+}  // namespace esfem::test_registry
