@@ -144,7 +144,7 @@ test-vtu:
 sanitize:
 	@export BUILD=build-asan PRESET=asan
 	$(call prepare,build,build tests peers,sanitized)
-	$(call run_tests,$$BUILD,-L '^(fe|mesh|assembly|linalg|time|analysis)$$' \
+	$(call run_tests,$$BUILD,-L '^(fe|mesh|assembly|linalg|time|analysis|tables)$$' \
 	  -E 'GeneratedMesh.KeepsItsPromises.*_(50|100) |FollowsASizeFunction|ResolvesADeeplyPerturbedTorus|IsTheSameToTheBitAfterOtherCalls')
 
 # Runs that are killed at random moments, full disks, damaged checkpoints; a part of it as a check.

@@ -12,8 +12,8 @@
 
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/experiment.hpp"
-#include "solver/analysis/claims.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/claims.hpp"
 
 namespace {
 

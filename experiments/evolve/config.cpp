@@ -5,10 +5,10 @@
 
 #include "experiments/evolve/mesh.hpp"
 #include "experiments/evolve/units.hpp"
-#include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
 #include "solver/surfaces/named.hpp"
+#include "solver/tables/json_reader.hpp"
 
 namespace esfem {
 

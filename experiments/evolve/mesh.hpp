@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "solver/analysis/json_reader.hpp"
 #include "solver/mesh/read.hpp"
+#include "solver/tables/json_reader.hpp"
 
 namespace esfem {
 

@@ -2,8 +2,8 @@
 #include <set>
 
 #include "experiments/evolve/entry.hpp"
-#include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/json_reader.hpp"
 
 namespace esfem {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/json_reader.hpp"
 
 namespace esfem {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "experiments/evolve/config.hpp"
-#include "solver/analysis/json_reader.hpp"
+#include "solver/tables/json_reader.hpp"
 
 namespace esfem {
 

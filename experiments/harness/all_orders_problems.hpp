@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "experiments/harness/grid.hpp"
-#include "solver/analysis/table.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "experiments/harness/command_line.hpp"
-#include "solver/analysis/fit_orders.hpp"
-#include "solver/analysis/table.hpp"
+#include "solver/tables/fit_orders.hpp"
+#include "solver/tables/table.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/analysis/table.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem {
 

@@ -4,10 +4,10 @@
 
 #include <functional>
 
-#include "solver/analysis/table.hpp"
 #include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/tables/table.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem {

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "solver/analysis/quantities.hpp"
-#include "solver/analysis/table.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/exact_evolution.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem {
 

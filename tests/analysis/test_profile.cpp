@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "solver/analysis/diagnostics.hpp"
-#include "solver/analysis/table.hpp"
 #include "solver/constants.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem::test_profile {
 namespace {

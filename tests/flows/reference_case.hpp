@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <string>
 
-#include "solver/analysis/table.hpp"
 #include "solver/mesh/read.hpp"
+#include "solver/tables/table.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem {

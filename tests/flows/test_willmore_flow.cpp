@@ -4,12 +4,12 @@
 
 #include <memory>
 
-#include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/flows/willmore_terms.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/read.hpp"
+#include "solver/tables/table.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 

@@ -8,11 +8,11 @@
 #include <iterator>
 
 #include "experiments/evolve/config.hpp"
-#include "solver/analysis/claims.hpp"
-#include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/mesh_file.hpp"
 #include "solver/read_json.hpp"
+#include "solver/tables/claims.hpp"
+#include "solver/tables/table.hpp"
 #include "solver/time/checkpoint.hpp"
 
 namespace esfem {

@@ -11,8 +11,8 @@
 #include <iterator>
 #include <string>
 
-#include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem {
 

@@ -7,9 +7,9 @@
 
 #include "experiments/harness/all_orders_problems.hpp"
 #include "experiments/harness/small_steps.hpp"
-#include "solver/analysis/claims.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/claims.hpp"
 #include "tests/time/linear_ode.hpp"
 
 namespace esfem::test_all_orders {

@@ -9,8 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem::test_mcf_dumbbell {
 namespace {

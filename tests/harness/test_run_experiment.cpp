@@ -11,7 +11,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "solver/analysis/table.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem::test_run_experiment {
 namespace {

@@ -11,10 +11,10 @@
 #include <fstream>
 #include <iterator>
 
-#include "solver/analysis/table.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem::test_units {
 namespace {

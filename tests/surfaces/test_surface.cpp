@@ -5,7 +5,6 @@
 #include <functional>
 #include <random>
 
-#include "solver/analysis/table.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
@@ -13,6 +12,7 @@
 #include "solver/surfaces/angenent_torus.hpp"
 #include "solver/surfaces/named.hpp"
 #include "solver/surfaces/surface.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem::test_surface {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/analysis/claims.hpp"
+#include "solver/tables/claims.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/json_reader.hpp"
 
 namespace esfem {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "solver/analysis/table.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem {
 

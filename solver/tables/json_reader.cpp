@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/analysis/json_reader.hpp"
+#include "solver/tables/json_reader.hpp"
 
 #include <cmath>
 #include <limits>

@@ -8,8 +8,8 @@
 #include <tuple>
 #include <utility>
 
-#include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <sstream>
 
-#include "solver/analysis/table.hpp"
+#include "solver/tables/table.hpp"
 
-namespace esfem::test_tables {
+namespace esfem::test_export_table {
 namespace {
 
 using testing::ElementsAre, testing::HasSubstr, testing::Not;
@@ -132,4 +132,4 @@ TEST(Values, AreColumnsOfTheirOwn) {
 }
 
 }  // namespace
-}  // namespace esfem::test_tables
+}  // namespace esfem::test_export_table

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <limits>
 
-#include "solver/analysis/table.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem::test_table {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/analysis/table.hpp"
+#include "solver/tables/table.hpp"
 
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include "solver/analysis/json_reader.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/json_reader.hpp"
 
 namespace esfem {
 namespace {

@@ -10,8 +10,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "solver/analysis/claims.hpp"
 #include "solver/error.hpp"
+#include "solver/tables/claims.hpp"
 
 namespace esfem::test_claims {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
-#include "solver/analysis/fit_orders.hpp"
 #include "solver/error.hpp"
 #include "solver/linalg/least_squares.hpp"
+#include "solver/tables/fit_orders.hpp"
 
 namespace esfem::test_fit_orders {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/analysis/fit_orders.hpp"
+#include "solver/tables/fit_orders.hpp"
 
 #include <ceres/ceres.h>
 

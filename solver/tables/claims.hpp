@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "solver/analysis/fit_orders.hpp"
-#include "solver/analysis/table.hpp"
+#include "solver/tables/fit_orders.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem {
 
