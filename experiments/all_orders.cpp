@@ -152,10 +152,7 @@ std::vector<Cell> cells(const std::vector<Planned>& runs) {
          estimated_cost(planned),
          [=](const Row& row, const std::string&) { return run_all_orders(run, row); },
          planned_row(run.level, steps, planned.k,
-                     {{"flow", run.flow.flow},
-                      {"degree", std::to_string(run.degree)},
-                      {"bdf", std::to_string(run.bdf)},
-                      {"run", kind}})});
+                     {{"flow", run.flow.flow}, {"degree", run.degree}, {"bdf", run.bdf}, {"run", kind}})});
   }
   return list;
 }

@@ -326,7 +326,7 @@ void run_order(MovingMesh& on, const UniformSteps& grid, Row& row) {
 }
 
 nlohmann::json labels(const Run& run) {
-  return {{"run", run.kind}, {"bdf", std::to_string(run.bdf)}, {"degree", std::to_string(run.degree)}};
+  return {{"run", run.kind}, {"bdf", run.bdf}, {"degree", run.degree}};
 }
 
 Row run_cell(const Setting& setting, const Run& run, const SharedMesh& shared, Row row) {

@@ -194,7 +194,7 @@ std::vector<Cell> cells(const Setting& setting) {
     list.push_back(
         {cell_name(run), estimated_cost(run),
          [=](const Row& row, const std::string& folder) { return run_cell(setting, run, row, folder); },
-         planned_row(run.level, run.steps(), run.k, {{"method", format("bdf%d", run.bdf)}})});
+         planned_row(run.level, run.steps(), run.k, {{"bdf", run.bdf}})});
   }
   return list;
 }

@@ -327,9 +327,9 @@ std::vector<Cell> cells(const std::vector<Run>& runs) {
     Row row;
     row.level = run.level;
     row.tau = moose ? moose_times()[1] : first_step;
-    row.more = {{"elements", format("P%d", run.degree)},
-                {"stepping", moose ? "backward Euler, MOOSE's steps"
-                                   : format("BDF%d, tolerance %g", run.bdf, run.tolerance())}};
+    row.labels = {{"degree", run.degree},
+                  {"stepping", moose ? "backward Euler, MOOSE's steps" : format("BDF%d", run.bdf)}};
+    if (!moose) row.labels["tolerance"] = run.tolerance();
     list.push_back(
         {run.name(), estimated_cost(run),
          [=](const Row& planned, const std::string& folder) { return run_cell(run, planned, folder); }, row});

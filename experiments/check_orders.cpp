@@ -27,11 +27,13 @@ const char* const help =
     "rows. Where the paper's statement does not hold as it stands, the verdict says what became of it "
     "(reproduced, but;\n"
     "not reproduced; corrected); the numbers then are this project's finding, and are checked all the "
-    "same.\n\n"
-    "--output FILE writes the same as JSON: {\"schema\": \"esfem-verdicts/1\", \"tables\": "
+    "same. A family of\n"
+    "claims is one line, \"18 of 20 met\"; those that are not met are listed below it.\n\n"
+    "--output FILE writes all of them as JSON: {\"schema\": \"esfem-verdicts/1\", \"tables\": "
     "[{\"experiment\", \"paper\",\n"
     "\"table\", \"claims\": [{\"id\", \"statement\", \"source\", \"met\", \"finding\", \"measured\", "
-    "\"expected\", \"rows_used\", ...}]}]}.\n\n"
+    "\"expected\", \"rows_used\", ...}], \"families\",\n"
+    "\"elsewhere\": how many claims the other preset checks}]}.\n\n"
     "Example:\n  check_orders results/check/mcf_sphere.json\n\n"
     "Exit codes: 0 all claims are met, 1 wrong usage or input, 3 a claim is not met.\n";
 
@@ -99,9 +101,11 @@ nlohmann::json to_json(const Claim& claim, const Verdict& verdict) {
                          {"measured", measured(claim, verdict)},
                          {"expected", expected(claim)},
                          {"rows_used", verdict.rows_used},
-                         {"variant", claim.variant},
+                         {"where", claim.where},
+                         {"figures", claim.figures},
                          {"reason", verdict.reason},
                          {"remark", claim.remark}};
+  if (!claim.family.empty()) json["family"] = claim.family;
   if (!claim.norm.empty()) json["norm"] = claim.norm;
   if (!claim.variable.empty()) json["variable"] = claim.variable;
   return json;
@@ -110,6 +114,60 @@ nlohmann::json to_json(const Claim& claim, const Verdict& verdict) {
 struct Count {
   int met = 0, checked = 0;
 };
+
+struct Checked {
+  const Claim* claim;
+  Verdict verdict;
+};
+
+Count count_met(const std::vector<Checked>& claims) {
+  Count count{0, static_cast<int>(claims.size())};
+  for (const Checked& checked : claims) count.met += checked.verdict.met;
+  return count;
+}
+
+/// The members of a family that are checked, as one line.
+Line describe_family(const std::string& id, const std::string& statement,
+                     const std::vector<Checked>& members) {
+  const Count count = count_met(members);
+  const Claim& first = *members[0].claim;
+  int rows = 0;
+  for (const Checked& member : members) rows += member.verdict.rows_used;
+  Line line;
+  line.verdict = format("%d of %d met", count.met, count.checked);
+  line.rows = std::to_string(rows);
+  line.statement = id + ": " + statement + " (" + first.paper + " " + first.place + ")";
+  return line;
+}
+
+/// A claim by itself is a line; a family is one, and one for each of its members that is not met.
+std::vector<Line> lines_of(const std::vector<Checked>& claims, const Reference& reference) {
+  std::vector<Line> lines = {{"verdict", "measured", "expected", "rows", "quantity", "claim", "", ""}};
+  for (auto first = claims.begin(); first != claims.end();) {
+    const std::string& id = first->claim->family;
+    const auto last = id.empty() ? first + 1 : std::find_if(first, claims.end(), [&](const Checked& other) {
+      return other.claim->family != id;
+    });
+    if (!id.empty()) lines.push_back(describe_family(id, reference.families.at(id), {first, last}));
+    for (; first != last; ++first)
+      if (id.empty() || !first->verdict.met) lines.push_back(describe(*first->claim, first->verdict));
+  }
+  return lines;
+}
+
+/// {id: {"statement", "met", "claims"}} of the families that have members among the claims.
+nlohmann::json families_to_json(const std::vector<Checked>& claims, const Reference& reference) {
+  nlohmann::json json = nlohmann::json::object();
+  for (const auto& [id, statement] : reference.families) {
+    std::vector<Checked> members;
+    for (const Checked& checked : claims)
+      if (checked.claim->family == id) members.push_back(checked);
+    const Count count = count_met(members);
+    if (count.checked > 0)
+      json[id] = {{"statement", statement}, {"met", count.met}, {"claims", count.checked}};
+  }
+  return json;
+}
 
 /// Prints the verdicts on one table and appends them to `verdicts`. A table that no claim applies to counts
 /// as one that fails.
@@ -121,25 +179,26 @@ Count check_table(const std::string& file, const std::string& folder, nlohmann::
     throw InputError(source + " is about " + reference.experiment + " of " + reference.paper + ", but " +
                      file + " is of " + table.experiment + " of " + table.paper);
 
-  Count count;
+  std::vector<Checked> checked;
   nlohmann::json claims = nlohmann::json::array();
-  std::vector<Line> lines = {{"verdict", "measured", "expected", "rows", "quantity", "claim", "", ""}};
   for (const Claim& claim : reference.claims) {
     if (!applies(claim, table)) continue;
-    const Verdict verdict = check_claim(claim, table);
-    ++count.checked;
-    count.met += verdict.met;
-    lines.push_back(describe(claim, verdict));
-    claims.push_back(to_json(claim, verdict));
+    checked.push_back({&claim, check_claim(claim, table)});
+    claims.push_back(to_json(claim, checked.back().verdict));
   }
-  verdicts.push_back(
-      {{"experiment", table.experiment}, {"paper", table.paper}, {"table", file}, {"claims", claims}});
+  const Count count = count_met(checked);
+  verdicts.push_back({{"experiment", table.experiment},
+                      {"paper", table.paper},
+                      {"table", file},
+                      {"claims", claims},
+                      {"families", families_to_json(checked, reference)},
+                      {"elsewhere", reference.claims.size() - checked.size()}});
   std::printf("%s (%s): %s\n", table.experiment.c_str(), table.paper.c_str(), file.c_str());
   if (count.checked == 0) {
     std::printf("  NOT MET  no claim of %s applies to the preset of this table.\n\n", source.c_str());
     return {0, 1};
   }
-  print(lines);
+  print(lines_of(checked, reference));
   std::printf("\n");
   return count;
 }

@@ -301,7 +301,7 @@ void run_convergence(const GrowingSphereRuns& runs, const std::string& kind, con
 }
 
 nlohmann::json labels(const Run& run) {
-  return {{"run", run.kind}, {"bdf", std::to_string(run.bdf)}};
+  return {{"run", run.kind}, {"bdf", run.bdf}};
 }
 
 Row run_cell(const Setting& setting, const Run& run, Row row) {

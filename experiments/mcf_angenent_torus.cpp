@@ -222,11 +222,8 @@ double estimated_cost(const Run& run) {
 std::vector<Cell> cells(const Setting& setting) {
   std::vector<Cell> list;
   for (const Run& run : setting.runs) {
-    const nlohmann::json labels = {{"run", run.kind},
-                                   {"flow", run.flow},
-                                   {"mesh", run.mesh},
-                                   {"degree", std::to_string(run.degree)},
-                                   {"bdf", std::to_string(run.bdf)}};
+    const nlohmann::json labels = {
+        {"run", run.kind}, {"flow", run.flow}, {"mesh", run.mesh}, {"degree", run.degree}, {"bdf", run.bdf}};
     list.push_back({cell_name(run), estimated_cost(run),
                     [=](const Row& row, const std::string&) { return run_cell(setting, run, row); },
                     planned_row(run.level, run.kind == "order" ? order_steps : time_steps, run.k, labels)});

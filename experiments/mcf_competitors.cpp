@@ -184,13 +184,12 @@ std::vector<Cell> cells(const std::vector<Run>& runs) {
   for (const Run& run : runs) {
     const Case& start =
         *std::find_if(cases.begin(), cases.end(), [&](const Case& one) { return one.name == run.surface; });
-    list.push_back({cell_name(run), estimated_cost(run, start),
-                    [=](const Row& row, const std::string&) { return run_cell(run, start, row); },
-                    planned_row(run.level, start.time_steps, run.k,
-                                {{"surface", run.surface},
-                                 {"scheme", run.scheme},
-                                 {"degree", std::to_string(run.degree)},
-                                 {"bdf", std::to_string(run.bdf)}})});
+    list.push_back(
+        {cell_name(run), estimated_cost(run, start),
+         [=](const Row& row, const std::string&) { return run_cell(run, start, row); },
+         planned_row(
+             run.level, start.time_steps, run.k,
+             {{"surface", run.surface}, {"scheme", run.scheme}, {"degree", run.degree}, {"bdf", run.bdf}})});
   }
   return list;
 }

@@ -175,7 +175,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row) {
 
 nlohmann::json labels(const Run& run) {
   return {{"run", run.kind}, {"projection", "projected"}, {"mesh", run.mesh},
-          {"F", run.F},      {"theta", run.theta},        {"bdf", std::to_string(run.bdf)}};
+          {"F", run.F},      {"theta", run.theta},        {"bdf", run.bdf}};
 }
 
 std::string cell_name(const Run& run) {

@@ -243,9 +243,8 @@ std::vector<Cell> cells(const Setting& setting) {
     list.push_back(
         {cell_name(run), estimated_cost(run),
          [=](const Row& row, const std::string&) { return run_cell(run, row); },
-         planned_row(
-             run.level, run.start.time_steps, run.k,
-             {{"surface", run.start.name}, {"scheme", run.scheme}, {"degree", std::to_string(run.degree)}})});
+         planned_row(run.level, run.start.time_steps, run.k,
+                     {{"surface", run.start.name}, {"scheme", run.scheme}, {"degree", run.degree}})});
   }
   return list;
 }

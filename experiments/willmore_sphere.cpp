@@ -195,7 +195,7 @@ Row run_cell(const Setting& setting, const Run& run, Row row) {
 
 nlohmann::json labels(const Run& run) {
   nlohmann::json labels = {{"run", run.kind}, {"projection", run.projection}};
-  if (run.kind == "growth") labels["radius"] = format("%g", run.radius);
+  if (run.kind == "growth") labels["radius"] = run.radius;
   return labels;
 }
 

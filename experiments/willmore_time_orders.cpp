@@ -118,7 +118,7 @@ std::vector<Cell> cells(const Setting& setting) {
         list.push_back(
             {format("%s_bdf%d_tau%d", projection.c_str(), bdf, k), 2,
              [=](const Row& row, const std::string&) { return run_cell(setting, bdf, projection, row); },
-             planned_row(0, time_steps, k, {{"bdf", std::to_string(bdf)}, {"projection", projection}})});
+             planned_row(0, time_steps, k, {{"bdf", bdf}, {"projection", projection}})});
       }
     }
   }

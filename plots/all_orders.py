@@ -14,9 +14,10 @@ from matplotlib.patches import Patch, Rectangle
 
 import style
 from script import run
-from table import TableError
+from table import TableError, label_of
 
-DEGREES, ORDERS = ("1", "2", "3", "4"), ("1", "2", "3", "4", "5")
+DEGREES, ORDERS = (1, 2, 3, 4), (1, 2, 3, 4, 5)
+LABELS = ("flow", "degree", "bdf", "run")
 FLOWS = {
     "mean_curvature": ("mean curvature flow, (5.1)", ("x", "v", "nu", "H")),
     "dziuk": ("mean curvature flow, Dziuk", ("x", "v", "nu", "H")),
@@ -42,20 +43,14 @@ def draw(table, _norm):
     """Yields (name, figure). TableError when the table has no fits of these flows."""
     rows = {}
     for row in table["rows"]:
-        rows.setdefault(tuple(str(row.get(key)) for key in ("flow", "degree", "bdf", "run")), []).append(row)
+        rows.setdefault(tuple(label_of(row, name) for name in LABELS), []).append(row)
     fits = {}
     for fit in table.get("fits", []):
-        fits[labels_of(fit.get("variant", "")), fit["quantity"], fit["norm"], fit["variable"]] = fit["order"]
+        fits[tuple(label_of(fit, name) for name in LABELS), fit["quantity"], fit["norm"], fit["variable"]] = fit["order"]
     flows = [flow for flow in FLOWS if any(key[0] == flow for key in rows)]
     if not flows:
         raise TableError(f"no rows of {', '.join(FLOWS)}")
     yield "gallery/all_orders", _figure(flows, rows, fits)
-
-
-def labels_of(variant):
-    """(flow, degree, bdf, run) of a variant such as "bdf=2, degree=1, flow=dziuk, run=time"."""
-    labels = dict(part.split("=", 1) for part in variant.split(", ") if "=" in part)
-    return tuple(labels.get(key, "") for key in ("flow", "degree", "bdf", "run"))
 
 
 def state_of(rows):
@@ -112,7 +107,7 @@ def _grid(axes, flow, quantities, grid, rows, fits):
             of_cell = rows.get(key, [])
             orders = [fits.get((key, quantity, norm, variable)) for quantity in quantities]
             hidden = [is_hidden(of_cell, quantity, norm) for quantity in quantities]
-            _cell(axes, j, i, state_of(of_cell), orders, hidden, expected(int(degree), int(bdf)))
+            _cell(axes, j, i, state_of(of_cell), orders, hidden, expected(degree, bdf))
 
 
 def _cell(axes, x, y, state, orders, hidden, expected):

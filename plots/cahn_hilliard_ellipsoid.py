@@ -11,7 +11,7 @@ here all of them are drawn. The figures of a method without any such run are lef
 """
 from convergence import ROUND_OFF, Panel, curves_of, draw_panels, failure_notes
 from script import run
-from table import TableError
+from table import TableError, label_of
 
 NORMS = ("nodal", "lifted")
 FIGURES = {1: ("bk22/fig2", "bk22/fig3"), 3: ("bk22/fig4", "bk22/fig5")}
@@ -20,9 +20,9 @@ START = r"Started from Ritz maps, with $\vartheta$; maxima over all $n \geq 0$."
 
 def draw(table, norm):
     """Yields (name, figure) for what the table has. TableError when there is nothing, or a figure would be empty."""
-    rows = [row for row in table["rows"] if row.get("run") == "ritz_theta" and str(row.get("degree")).isdigit()]
-    degree = min((int(row["degree"]) for row in rows), default=1)
-    methods = {bdf: [row for row in rows if str(row.get("bdf")) == str(bdf) and int(row["degree"]) == degree]
+    rows = [row for row in table["rows"] if label_of(row, "run") == "ritz_theta"]
+    degree = min((label_of(row, "degree", 1) for row in rows), default=1)
+    methods = {bdf: [row for row in rows if (label_of(row, "bdf"), label_of(row, "degree", 1)) == (bdf, degree)]
                for bdf in FIGURES}
     if not any(methods.values()):
         raise TableError('no rows with run "ritz_theta" and bdf 1 or 3')

@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 import style
 import time_series
 from script import run
-from table import TableError, has_series, series
+from table import TableError, has_series, label_of, series
 
 STEM = "cahn_hilliard_energy"
-METHOD = "bdf2"
+BDF = 2
 ENDS = {"bk22/fig6": 0.2, "bk22/fig7": 1.0}
 SETTLED = 0.4  # from here on the finest energies repeat themselves
 FINEST = 3  # that many meshes are shown there
@@ -23,10 +23,10 @@ LEFT, RIGHT, TOP, BOTTOM, HEIGHT = 0.48, 0.17, 0.26, 0.36, 3.3  # inches; HEIGHT
 
 def draw(table, folder):
     """Yields (name, figure) for what the table has. TableError when there are no energies."""
-    rows = [row for row in table["rows"] if row.get("method") == METHOD]
+    rows = [row for row in table["rows"] if label_of(row, "bdf") == BDF]
     lines = energies(rows)
     if not lines:
-        raise TableError(f"no energies of the method {METHOD}")
+        raise TableError(f"no energies with BDF{BDF}")
     epsilon = table.get("parameters", {}).get("epsilon")
     for name, end in ENDS.items():
         # Runs that reach this figure's part of the time beyond the other figure's.
@@ -68,7 +68,7 @@ def energy_figure(rows, end, epsilon, notes):
         inset.set(xlim=(SETTLED, end), ylim=settled_range(rows[-1], end))
         inset.grid(True)
     taus = sorted({style.power_of_ten(row["tau"]).strip("$") for row in rows})
-    heading = ["BDF2", *(rf"$\tau = {tau}$" for tau in taus)]
+    heading = [f"BDF{BDF}", *(rf"$\tau = {tau}$" for tau in taus)]
     heading += [rf"$\varepsilon = {epsilon:g}$"] if epsilon else []
     figure.text(LEFT / style.WIDTH, 1 - 0.06 / height, ", ".join(heading), va="top")
     time_series.add_notes(figure, notes)

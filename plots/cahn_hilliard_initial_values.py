@@ -13,7 +13,7 @@ import time_series
 from script import run
 from snapshots import Snapshots, evenly, shared_times, surface_grid
 from surfaces import draw_surface, extent, read_surface, view
-from table import TableError, has_series
+from table import TableError, has_series, label_of
 
 STEM = "cahn_hilliard_initial_values"
 SCHEMES = {"interpolation": "interpolation, (3.12)", "ritz_theta": r"Ritz map and $\vartheta$, (3.15)"}
@@ -25,7 +25,8 @@ BAR, BAR_HEIGHT, BAR_LABELS = 2.6, 0.11, 0.36  # inches
 
 def draw(table, folder):
     """Yields the figure; `folder` is the table's. TableError when no run has snapshots."""
-    rows = [row for row in table["rows"] if row.get("scheme") in SCHEMES and row.get("constant") == CONSTANT]
+    rows = [row for row in table["rows"]
+            if label_of(row, "scheme") in SCHEMES and label_of(row, "constant") == CONSTANT]
     runs = finest_runs(rows)
     if not runs:
         raise TableError(f"no snapshots of the schemes {' and '.join(SCHEMES)}")
@@ -39,7 +40,7 @@ def finest_runs(rows):
     found = {}
     for row in rows:
         if has_series(row) and row.get("snapshots"):
-            found.setdefault((row["nodes"], row["tau"]), {})[row["scheme"]] = row
+            found.setdefault((row["nodes"], row["tau"]), {})[label_of(row, "scheme")] = row
     if not found:
         return {}
     _, _, runs = max(((len(runs), (nodes, -tau), runs) for (nodes, tau), runs in found.items()),

@@ -7,7 +7,6 @@ published resolution that comes farthest and for the finest one that comes as fa
 """
 import json
 import os
-import re
 
 import numpy as np
 from matplotlib.cm import ScalarMappable
@@ -19,7 +18,7 @@ import time_series
 from script import run
 from snapshots import Snapshots, Strip, evenly
 from surfaces import view
-from table import TableError, has_series, series
+from table import TableError, has_series, label_of, series
 
 STEM = "cahn_hilliard_pfhub"
 PUBLISHED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "reference", "published", "pfhub_1d.json")
@@ -39,7 +38,7 @@ def draw(table, folder):
     rows = [row for row in table["rows"] if has_series(row) and series(row, "energy")]
     if not rows:
         raise TableError("no run has the series energy")
-    rows.sort(key=lambda row: (row.get("stepping") != MOOSE_STEPS, row["nodes"], -(_tolerance(row) or 0)))
+    rows.sort(key=lambda row: (label_of(row, "stepping") != MOOSE_STEPS, row["nodes"], -label_of(row, "tolerance", 0)))
     strips = [(_mesh(row), Strip(evenly(Snapshots(row, folder, STEM).files, PICTURES), VIEW,
                                  style.WIDTH - LABEL - 0.62)) for row in _pictured(rows, folder)]
     yield "pfhub/fig1d", _figure(rows, strips, time_series.failure_notes(table["rows"]))
@@ -58,19 +57,13 @@ def _pictured(rows, folder):
 
 
 def _mesh(row):
-    return f"{row.get('elements', '')}, {style.nodes_label(row['nodes'])}"
-
-
-def _tolerance(row):
-    """That of adaptive steps, or None."""
-    found = re.search(r", tolerance (\S+)$", row.get("stepping", ""))
-    return float(found[1]) if found else None
+    return f"P{label_of(row, 'degree', '')}, {style.nodes_label(row['nodes'])}"
 
 
 def _name(row):
-    steps, tolerance = row.get("stepping", ""), _tolerance(row)
+    steps, tolerance = label_of(row, "stepping", ""), label_of(row, "tolerance")
     if tolerance:
-        steps = f"{steps.partition(',')[0]}, tol. {style.power_of_ten(tolerance)}"
+        steps += f", tol. {style.power_of_ten(tolerance)}"
     return f"{_mesh(row)}, {steps}"
 
 
@@ -79,12 +72,12 @@ def _line_styles(rows):
     colours = iter(COLOURS * len(rows))
     meshes, styles = set(), []
     for row in rows:
-        if row.get("stepping") == MOOSE_STEPS:
+        if label_of(row, "stepping") == MOOSE_STEPS:
             styles.append({"color": style.VERMILLION, "linestyle": style.DASHES["short"], "linewidth": 1.4, "zorder": 3})
             continue
         mesh = _mesh(row)
         styles.append({"color": next(colours), "linewidth": 0.7 if mesh in meshes else 1.5,
-                       "linestyle": style.DASHES["dash-dot" if row.get("elements") == "P2" else "solid"]})
+                       "linestyle": style.DASHES["dash-dot" if label_of(row, "degree") == 2 else "solid"]})
         meshes.add(mesh)
     return styles
 

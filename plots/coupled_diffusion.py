@@ -12,7 +12,7 @@ import statistics
 import style
 from convergence import QUANTITIES, Panel, checked_curves, curves, draw_panels, failure_notes
 from script import run
-from table import TableError, succeeded
+from table import TableError, label_of, succeeded
 
 NORMS = ("nodal", "lifted")  # the default is what the thesis plots
 DIFFERENCE = ("u_difference", "nodal_H1")
@@ -38,14 +38,14 @@ def draw(table, norm):
 
 
 def _runs(rows, kind):
-    return [row for row in rows if row.get("run") == kind and str(row.get("bdf")).isdigit()]
+    return [row for row in rows if label_of(row, "run") == kind and label_of(row, "bdf")]
 
 
 def of_main_bdf(rows):
     """The rows of BDF3, as in the thesis, or of the lowest order where nothing with BDF3 succeeded."""
-    orders = {int(row["bdf"]) for row in rows if succeeded(row)} or {int(row["bdf"]) for row in rows}
+    orders = {label_of(row, "bdf") for row in rows if succeeded(row)} or {label_of(row, "bdf") for row in rows}
     main = THESIS_BDF if THESIS_BDF in orders else min(orders)
-    return [row for row in rows if int(row["bdf"]) == main]
+    return [row for row in rows if label_of(row, "bdf") == main]
 
 
 def errors_figure(rows, quantity, norm, variable, degree):
@@ -53,7 +53,7 @@ def errors_figure(rows, quantity, norm, variable, degree):
     panels, skipped = [], {}
     for title, name, space in (("$L^2$ norm", "L2", degree + 1), ("$H^1$ seminorm", "H1_semi", degree)):
         lines, skipped[f"{quantity} in the {title}"] = checked_curves(rows, quantity, f"{norm}_{name}", variable)
-        order, faster = (space, (space + 1,)) if variable == "h" else (int(rows[0]["bdf"]), ())
+        order, faster = (space, (space + 1,)) if variable == "h" else (label_of(rows[0], "bdf"), ())
         panels.append(Panel(f"{title}, {norm}", lines, variable, order, faster))
     return draw_panels(panels, f"error of the {QUANTITIES[quantity]}{_end(rows)}", failure_notes(rows, skipped))
 
@@ -70,11 +70,11 @@ def difference_figure(rows):
     one less than the errors, and does not depend on h: hence the slopes, and none against h.
     """
     main = of_main_bdf(rows)
-    bdf = int(main[0]["bdf"])
+    bdf = label_of(main[0], "bdf")
     in_time, in_space = (checked_curves(main, *DIFFERENCE, variable)[0] for variable in ("tau", "h"))
     panels = [Panel(f"BDF{bdf}, time", in_time, "tau", bdf - 1), Panel(f"BDF{bdf}, space", in_space, "h")]
     shared = _finest_shared_mesh(rows)
-    methods, _ = curves(shared, *DIFFERENCE, "tau", lambda row: (-int(row["bdf"]), f"BDF{row['bdf']}"))
+    methods, _ = curves(shared, *DIFFERENCE, "tau", lambda row: (-label_of(row, "bdf"), f"BDF{label_of(row, 'bdf')}"))
     if len(methods) > 1:
         for curve in methods:
             curve.order = int(curve.label[len("BDF"):]) - 1
@@ -89,7 +89,7 @@ def _finest_shared_mesh(rows):
     meshes = {}
     for row in filter(succeeded, rows):
         meshes.setdefault(float(f"{row['h']:.6g}"), []).append(row)
-    return max(meshes.items(), default=(0, []), key=lambda item: (len({row["bdf"] for row in item[1]}), -item[0]))[1]
+    return max(meshes.items(), default=(0, []), key=lambda item: (len({label_of(row, "bdf") for row in item[1]}), -item[0]))[1]
 
 
 def _seconds_note(rows, bdf):

@@ -10,7 +10,7 @@ of its runs ("convergence", "order").
 import style
 from convergence import NORMS, QUANTITIES as NAMES, Panel, curves_of, draw_panels, failure_notes
 from script import run
-from table import TableError, succeeded
+from table import TableError, label_of, succeeded
 
 QUANTITIES = ("x", "v", "nu", "H")
 NORM = "lifted_H1"  # of the exact surface: where the theory's orders show
@@ -20,9 +20,9 @@ MESHES = {"grid": "", "unstructured": " unstructured"}
 
 def draw(table, norm):
     """Yields (name, figure) for what the table has. TableError when there is nothing."""
-    space, time = ([row for row in table["rows"] if row.get("run") == kind and row.get("flow") in FLOWS]
+    space, time = ([row for row in table["rows"] if label_of(row, "run") == kind and label_of(row, "flow") in FLOWS]
                    for kind in ("convergence", "order"))
-    time = [row for row in time if row["flow"] == "mean_curvature" and str(row.get("degree")) == "2"]
+    time = [row for row in time if label_of(row, "flow") == "mean_curvature" and label_of(row, "degree") == 2]
     if not space and not time:
         raise TableError('no rows with run "convergence" or "order" of a known flow')
     if space:
@@ -32,7 +32,7 @@ def draw(table, norm):
 
 
 def _variant(row):
-    return row["flow"], str(row.get("degree")), row.get("mesh")
+    return tuple(label_of(row, name) for name in ("flow", "degree", "mesh"))
 
 
 def drawn_rows(rows):
@@ -43,7 +43,7 @@ def drawn_rows(rows):
         methods = {}
         for row in good:
             if _variant(row) == variant:
-                methods.setdefault(int(row["bdf"]), []).append(row)
+                methods.setdefault(label_of(row, "bdf"), []).append(row)
         _, of_method = max(methods.items(), key=lambda item: (len({row["nodes"] for row in item[1]}), item[0]))
         tau = min(row["tau"] for row in of_method)
         chosen += [row for row in of_method if row["tau"] < 1.01 * tau]
@@ -53,7 +53,7 @@ def drawn_rows(rows):
 def _label(row):
     """What makes a line, with a number that orders the lines: first those of (5.1)."""
     flow, degree, mesh = _variant(row)
-    place = list(FLOWS).index(flow), int(degree), mesh != "grid"
+    place = list(FLOWS).index(flow), degree, mesh != "grid"
     return -(place[0] * 100 + place[1] * 10 + place[2]), (
         f"{FLOWS[flow]} $P_{degree}${MESHES.get(mesh, f' {mesh}')}")
 
@@ -76,7 +76,7 @@ def _setting(rows):
     """BDF methods and step sizes of the lines."""
     settings = {}
     for row in rows:
-        settings.setdefault(rf"BDF{row['bdf']}, $\tau = {row['tau']:.3g}$", []).append(_label(row)[1])
+        settings.setdefault(rf"BDF{label_of(row, 'bdf')}, $\tau = {row['tau']:.3g}$", []).append(_label(row)[1])
     return style.wrap("; ".join(f"{', '.join(dict.fromkeys(labels))}: {setting}"
                                 for setting, labels in settings.items()) + ".")
 
@@ -86,7 +86,7 @@ def time_figure(rows, norm):
     panels, skipped = [], {}
     for quantity in QUANTITIES:
         lines, skipped[quantity] = curves_of(rows, lambda row, q=quantity: row["errors"].get(q, {}).get(norm), "tau",
-                                             lambda row: (-int(row["bdf"]), f"BDF{row['bdf']}"), 1e-14)
+                                             lambda row: (-label_of(row, "bdf"), f"BDF{label_of(row, 'bdf')}"), 1e-14)
         for line in lines:
             line.order = int(line.label[len("BDF"):])
         panels.append(Panel(NAMES[quantity], lines, "tau"))

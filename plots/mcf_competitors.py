@@ -12,25 +12,26 @@ import style
 import time_series
 from convergence import NORMS, failure_notes
 from script import run
-from table import TableError, succeeded
+from table import TableError, label_of, succeeded
 
 NORM = "nodal_L2"
 SURFACES = {"sphere": "sphere", "angenent_torus": "self-shrinking torus"}
 SCHEMES = {"kll19": ("(5.1)", style.BLUE), "dziuk": ("Dziuk", style.VERMILLION), "bgn": ("BGN", style.PURPLE)}
 # One look for each BDF method, and one for linear elements.
-LOOKS = {("2", "3"): ("-", "o"), ("2", "2"): (style.DASHES["dashed"], "s"), ("2", "1"): (style.DASHES["dotted"], "^"),
-         ("1", "1"): (style.DASHES["dash-dot"], "v")}
+LOOKS = {(2, 3): ("-", "o"), (2, 2): (style.DASHES["dashed"], "s"), (2, 1): (style.DASHES["dotted"], "^"),
+         (1, 1): (style.DASHES["dash-dot"], "v")}
 SECONDS = "seconds_of_steps"
 
 
 def draw(table, norm):
     """Yields (name, figure). TableError when there is nothing to show."""
-    rows = [row for row in table["rows"] if row.get("scheme") in SCHEMES and row.get("surface") in SURFACES]
+    rows = [row for row in table["rows"]
+            if label_of(row, "scheme") in SCHEMES and label_of(row, "surface") in SURFACES]
     points = {surface: {} for surface in SURFACES}
     for row in filter(succeeded, rows):
         point = _point(row, norm)
         if point and _variant(row)[1:] in LOOKS:
-            points[row["surface"]].setdefault(_variant(row), []).append(point)
+            points[label_of(row, "surface")].setdefault(_variant(row), []).append(point)
     surfaces = [surface for surface in SURFACES if points[surface]]
     if not surfaces:
         raise TableError(f"no {SECONDS} with errors of x in the norm {norm} of {', '.join(SURFACES)}")
@@ -38,7 +39,7 @@ def draw(table, norm):
 
 
 def _variant(row):
-    return row["scheme"], str(row.get("degree")), str(row.get("bdf"))
+    return tuple(label_of(row, name) for name in ("scheme", "degree", "bdf"))
 
 
 def _point(row, norm):

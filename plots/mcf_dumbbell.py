@@ -18,7 +18,7 @@ import time_series
 from script import run
 from snapshots import Snapshots, surface_grid
 from surfaces import draw_surface, extent, read_surface, view
-from table import TableError, has_series, series
+from table import TableError, has_series, label_of, series
 
 REFERENCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "reference", "independent",
                          "dumbbell_axisymmetric.json")
@@ -95,20 +95,20 @@ def _same(a, b):
 
 def _finest(rows, start):
     found = [row for row in rows
-             if has_series(row) and row.get("method") in LABELS and str(row.get("start")).startswith(start)]
+             if has_series(row) and label_of(row, "method") in LABELS and label_of(row, "start", "").startswith(start)]
     return [row for row in found if row.get("level", 0) == max(other.get("level", 0) for other in found)]
 
 
 def _setting(rows, candidates, tau, bgn_tau):
     """The candidates with step size tau, and the runs of BGN at that level whose step size is closest to bgn_tau."""
-    runs = {row["method"]: row for row in candidates if _same(row["tau"], tau)}
+    runs = {label_of(row, "method"): row for row in candidates if _same(row["tau"], tau)}
     for method in ("bgn", "bgn_p1"):
-        others = [row for row in rows if has_series(row) and row.get("method") == method
+        others = [row for row in rows if has_series(row) and label_of(row, "method") == method
                   and row.get("level", 0) == candidates[0].get("level", 0)]
         if others and method not in runs:
             runs[method] = min(others, key=lambda row: abs(row["tau"] - bgn_tau))
     first = next(row for row in candidates if _same(row["tau"], tau))
-    return Setting(first["start"], first["tau"], first["nodes"], {m: runs[m] for m in LABELS if m in runs})
+    return Setting(label_of(first, "start"), first["tau"], first["nodes"], {m: runs[m] for m in LABELS if m in runs})
 
 
 # --- Figure 13.3: the surfaces

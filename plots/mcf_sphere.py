@@ -7,6 +7,7 @@ Writes figures/kll19/fig13_1.{pdf,png} and fig13_2.{pdf,png}. The paper shows x,
 """
 from convergence import convergence_figure
 from script import run
+from table import label_of
 
 QUANTITIES = ("x", "v", "nu", "H")
 NORM = "nodal_H1"  # what the authors plot
@@ -16,7 +17,7 @@ def draw(table, norm):
     """The theory's orders are those of the degree and of the BDF method; the sphere shows one or two more in space."""
     parameters = table.get("parameters", {})
     degree, bdf = parameters.get("degree", 2), parameters.get("bdf", 3)
-    rows = [row for row in table["rows"] if row.get("flow", "mean_curvature") == "mean_curvature"] or table["rows"]
+    rows = [row for row in table["rows"] if label_of(row, "flow", "mean_curvature") == "mean_curvature"] or table["rows"]
     yield "kll19/fig13_1", convergence_figure(rows, QUANTITIES, norm, "tau", order=bdf)
     yield "kll19/fig13_2", convergence_figure(rows, QUANTITIES, norm, "h", order=degree,
                                               faster=(degree + 1, degree + 2))

@@ -12,7 +12,7 @@ import os
 import sys
 
 from report_content import BEYOND, PAPERS
-from report_data import BEYOND_STEMS, SEVERITY, counts, place, read_results, verdict
+from report_data import BEYOND_STEMS, SEVERITY, Statement, counts, place, read_results, verdict
 from report_export import exports
 from report_html import number, picture, table, tag, text
 from report_tables import fits_table, provenance_table, runs_table
@@ -47,32 +47,56 @@ def claim_rows(statement):
 
 
 def _what(claim):
-    """Quantity, norm and variant of a check."""
+    """Quantity, norm and labels of a check."""
     norm = claim.get("norm", "").replace("_", " ").replace("H1 semi", "H1 seminorm")
     what = text(claim["quantity"].replace("_", " ") if claim["kind"] == "value" else claim["quantity"])
     if norm:
         what += ", " + norm.replace("H1", "H<sup>1</sup>").replace("L2", "L<sup>2</sup>")
     if "variable" in claim:
         what = f"order in {text(claim['variable'])}: {what}"
-    variant = ", ".join(part.partition("=")[2] if part.partition("=")[0] in ("flow", "run", "method", "surface", "scheme")
-                        else part for part in claim["variant"].split(", ")) if claim["variant"] else ""
-    return what + (tag("div", text(variant.replace("=", " ").replace("_", " ")), class_="place") if variant else "")
+    labels = ", ".join(str(value) if name in ("flow", "run", "method", "surface", "scheme") else f"{name} {value}"
+                       for name, value in claim["where"].items())
+    return what + (tag("div", text(labels.replace("_", " ")), class_="place") if labels else "")
 
 
 def claims_table(statements):
+    """The statements by themselves, then a line for each family, which opens to its members."""
+    families = {}
+    for statement in statements:
+        families.setdefault(statement.family, []).append(statement)
+    return statements_table(families.pop("", [])) + "".join(family_html(name, of) for name, of in families.items())
+
+
+def _table(statements):
+    rows = [row for statement in statements for row in claim_rows(statement)]
+    return table(["verdict", "statement", "of what", "expected", "measured"], rows, "claims") if rows else ""
+
+
+def _not_simply_holding(statements):
+    return [statement for statement in statements if statement.verdict not in ("reproduced", "holds")]
+
+
+def family_html(name, statements):
+    """How many of its members are met; on paper there are those that do not simply hold."""
+    claims = [claim for statement in statements for claim in statement.claims]
+    first = statements[0]
+    line = " ".join([badge(Statement(first.stem, claims).verdict), text(first.families[name]["statement"]) + ":",
+                     f"{sum(claim['met'] for claim in claims)} of {len(claims)} met",
+                     tag("span", text(first.source["place"]), class_="place")])
+    return (tag("details", tag("summary", line) + tag("div", _table(statements), class_="screen"), class_="family")
+            + tag("div", _table(_not_simply_holding(statements)), class_="print"))
+
+
+def statements_table(statements):
     """Many checks are for the screen; on paper there are those that do not simply hold."""
-    if not statements:
-        return ""
-    heads = ["verdict", "statement", "of what", "expected", "measured"]
     rows = [row for statement in statements for row in claim_rows(statement)]
     if len(rows) <= PRINTED_CHECKS:
-        return table(heads, rows, "claims")
-    others = [row for statement in statements if statement.verdict not in ("reproduced", "holds")
-              for row in claim_rows(statement)]
+        return _table(statements)
+    others = _table(_not_simply_holding(statements))
     note = tag("p", f"{len(rows)} checks, all in {tag('code', 'claims.csv')}" + ("; the others just hold:" if others else
                ", and all of them hold."), class_="note print")
-    return (tag("details", tag("summary", f"{len(rows)} checks") + table(heads, rows, "claims"), class_="screen") + note
-            + tag("div", table(heads, others, "claims"), class_="print") * bool(others))
+    return (tag("details", tag("summary", f"{len(rows)} checks") + _table(statements), class_="screen") + note
+            + tag("div", others, class_="print"))
 
 
 def figure_html(figure, folder, missing):

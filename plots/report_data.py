@@ -3,7 +3,6 @@
 import glob
 import json
 import os
-import re
 from dataclasses import dataclass, field
 
 from report_content import BEYOND, PAPERS
@@ -18,9 +17,10 @@ PAPER_KEYS = tuple(paper.key for paper in PAPERS)
 
 @dataclass
 class Statement:
-    """A statement and the checks that it is held to, all of one table."""
+    """A statement and the checks that it is held to, all of one table; `families`: what its families say, by id."""
     stem: str
     claims: list
+    families: dict = field(default_factory=dict)
 
     @property
     def first(self):
@@ -41,9 +41,14 @@ class Statement:
 
     @property
     def figures(self):
-        """Numbers of the paper's figures that its place names: "Figs. 2 and 4" are 2 and 4."""
-        named = re.search(r"Figs?\. ([\d.]+\d|\d)((?:(?:, | and )[\d.]*\d)*)", self.source["place"])
-        return re.findall(r"\d+(?:\.\d+)?", named[0]) if named else []
+        """Those of the paper, by number, that it is about."""
+        return self.first["figures"]
+
+    @property
+    def family(self):
+        """The id of the family that all of its checks are of; "" when there is none."""
+        ids = {claim.get("family", "") for claim in self.claims}
+        return ids.pop() if len(ids) == 1 else ""
 
     @property
     def is_published(self):
@@ -88,32 +93,29 @@ def read_results(path, reference):
         if table.get("schema") != SCHEMA:
             raise TableError(f'{entry["table"]}: schema is {table.get("schema")!r}, expected "{SCHEMA}"')
         results.tables[entry["experiment"]] = table
-        results.statements += grouped(entry["experiment"], entry["claims"])
+        results.statements += grouped(entry["experiment"], entry["claims"], entry.get("families", {}))
+        results.elsewhere += entry.get("elsewhere", 0)
     for path in sorted(glob.glob(os.path.join(reference, "*.json"))):
         stem = os.path.splitext(os.path.basename(path))[0]
-        claims = read_json(path)["claims"]
         if stem not in results.tables:
-            results.missing.append(f"results of {stem} ({len(claims)} claims)")
-        else:
-            results.elsewhere += len(claims) - sum(len(statement.claims) for statement in results.statements
-                                                   if statement.stem == stem)
+            results.missing.append(f"results of {stem}")
     return results
 
 
-def grouped(stem, claims):
+def grouped(stem, claims, families):
     """Claims with the same words and the same source are checks of one statement."""
     groups = {}
     for claim in claims:
         key = (claim["statement"], claim["source"]["paper"], claim["source"]["place"], claim["source"]["basis"])
         groups.setdefault(key, []).append(claim)
-    return [Statement(stem, group) for group in groups.values()]
+    return [Statement(stem, group, families) for group in groups.values()]
 
 
 def place(results):
     """{(section, key): statements}: ("kll19", "13.1") for a figure, ("kll19", "") for theorems and text,
     ("kll19", stem) for findings and independent values, ("beyond", stem) for what no paper has: there theorems stand, too.
 
-    Raises TableError for a statement of a source that the report does not know.
+    Raises TableError for a statement of a source, or about a figure, that the report does not know.
     """
     placed = {}
     numbers = {paper.key: [figure.number for figure in paper.figures] for paper in PAPERS}
@@ -121,15 +123,23 @@ def place(results):
         section = statement.source["paper"]
         if section not in PAPER_KEYS:
             section = results.tables[statement.stem]["paper"]
+        _check_figures(statement, section, numbers.get(section, []))
         if statement.stem in BEYOND_STEMS and (section not in PAPER_KEYS or statement.source["basis"] != "statement"):
             section, key = "beyond", statement.stem
         elif section not in PAPER_KEYS:
             raise TableError(f"no place in the report for the claims of {statement.stem}: see report_content.py")
         else:
-            known = [number for number in statement.figures if number in numbers[section]]
-            key = known[0] if known else "" if statement.is_published else statement.stem
+            key = statement.figures[0] if statement.figures else "" if statement.is_published else statement.stem
         placed.setdefault((section, key), []).append(statement)
     return placed
+
+
+def _check_figures(statement, paper, known):
+    for claim in statement.claims:
+        for figure in claim["figures"]:
+            if figure not in known:
+                raise TableError(f"{statement.stem}: claim {claim['id']}: there is no figure {figure} of {paper}; "
+                                 f"known are {', '.join(dict.fromkeys(known)) or 'none'}")
 
 
 def counts(statements):

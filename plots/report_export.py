@@ -4,10 +4,11 @@ import csv
 import io
 
 from report_data import verdict
+from table import label_text
 
 CLAIM_COLUMNS = ("experiment", "claim", "paper", "place", "basis", "statement", "verdict", "quantity", "norm", "variable",
-                 "variant", "expected", "measured", "rows")
-ORDER_COLUMNS = ("experiment", "variant", "quantity", "norm", "variable", "order", "from", "to", "rows")
+                 "labels", "expected", "measured", "rows")
+ORDER_COLUMNS = ("experiment", "labels", "quantity", "norm", "variable", "order", "from", "to", "rows")
 PRINTED_CLAIM_COLUMNS = ("place", "statement", "verdict", "expected", "measured")
 LATEX = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
          "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": "$<$", ">": "$>$", "|": "$|$", "§": r"\S",
@@ -23,13 +24,13 @@ def claims(results):
         for claim in statement.claims:
             rows.append((statement.stem, claim["id"], source["paper"], source["place"], source["basis"], claim["statement"],
                          verdict(claim), claim["quantity"], claim.get("norm", ""), claim.get("variable", ""),
-                         claim["variant"], claim["expected"], claim["measured"], claim["rows_used"]))
+                         label_text(claim["where"]), claim["expected"], claim["measured"], claim["rows_used"]))
     return rows
 
 
 def orders(results):
     """A row for each fit, with its 95% interval."""
-    return [(stem, fit.get("variant", ""), fit["quantity"], fit["norm"], fit["variable"], f"{fit['order']:.3f}",
+    return [(stem, label_text(fit.get("labels", {})), fit["quantity"], fit["norm"], fit["variable"], f"{fit['order']:.3f}",
              f"{fit['ci95'][0]:.3f}", f"{fit['ci95'][1]:.3f}", fit.get("rows_used", ""))
             for stem, table in results.tables.items() for fit in table.get("fits", [])]
 
@@ -44,7 +45,7 @@ def as_latex(columns, rows, caption):
     """A longtable of the rows, one caption and head for all its pages."""
     def line(cells):
         return " & ".join("".join(LATEX.get(letter, letter) for letter in str(cell)) for cell in cells) + r" \\"
-    wide = {"statement": "p{.36\\linewidth}", "place": "p{.15\\linewidth}", "variant": "p{.2\\linewidth}"}
+    wide = {"statement": "p{.36\\linewidth}", "place": "p{.15\\linewidth}", "labels": "p{.2\\linewidth}"}
     format_ = "".join(wide.get(column, "l") for column in columns)
     return "\n".join([r"% needs \usepackage{booktabs,longtable}", rf"\begin{{longtable}}{{{format_}}}",
                       rf"\caption{{{caption}}}\\", r"\toprule", line(columns), r"\midrule", r"\endhead", *map(line, rows),

@@ -4,6 +4,7 @@ import html
 import re
 
 from report_html import number, table, tag, text
+from table import label_of, label_text
 
 NORMS = {"lifted_L2": "lifted L<sup>2</sup>", "lifted_H1": "lifted H<sup>1</sup>", "nodal_L2": "nodal L<sup>2</sup>",
          "nodal_H1": "nodal H<sup>1</sup>"}
@@ -24,13 +25,13 @@ def fits_table(entry):
         if half > 3:
             continue  # not determined
         words = f"{text(fit['variable'])}: {fit['order']:.2f} ± {half:.2f}"
-        orders.setdefault((fit.get("variant", ""), norm), {}).setdefault(quantity, []).append(words)
+        orders.setdefault((label_text(fit.get("labels", {})), norm), {}).setdefault(quantity, []).append(words)
     if not orders:
         return ""
     order_of_norm = list(NORMS)
-    rows = [[_plain(variant.replace("=", " ")), NORMS[norm],
+    rows = [[_plain(labels), NORMS[norm],
              *("<br>".join(found.get(quantity, [])) for quantity in quantities)]
-            for (variant, norm), found in sorted(orders.items(), key=lambda item: (item[0][0], order_of_norm.index(item[0][1])))]
+            for (labels, norm), found in sorted(orders.items(), key=lambda item: (item[0][0], order_of_norm.index(item[0][1])))]
     heads = ["orders", "norm", *(text(quantity.replace("_", " ")) for quantity in quantities)]
     class_ = "numbers screen" if len(rows) > PRINTED_ORDERS else "numbers"
     return tag("div", table(heads, rows, class_), class_="scroll")
@@ -40,10 +41,10 @@ def runs_table(entry, stem):
     """All runs: mesh, step size, and the H1 errors of each quantity or, where there are none, their values."""
     rows = entry["rows"]
     columns = _columns(rows)
-    labels = [key for key in rows[0] if isinstance(rows[0][key], str) and key not in ("cell", "status", "variant")]
+    labels = dict.fromkeys(name for row in rows for name in row.get("labels", {}))
     body = []
     for row in rows:
-        cells = [*(_plain(row.get(key, "")) for key in labels), number(row.get("nodes")), number(row.get("h")),
+        cells = [*(_plain(label_of(row, name, "")) for name in labels), number(row.get("nodes")), number(row.get("h")),
                  number(row.get("tau")), number(row.get("seconds"))]
         cells += [read(row) for _, read in columns]
         body.append(cells + [_status(row["status"])])

@@ -15,7 +15,7 @@ import time_series
 from script import run
 from snapshots import Snapshots, Strip, evenly
 from surfaces import read_surface, upright_view
-from table import TableError, has_series, series
+from table import TableError, has_series, label_of, series
 from willmore import finest
 
 STEM = "surface_diffusion"
@@ -45,7 +45,7 @@ def _selected(rows):
     """All step sizes of the setting "paper" on its finest mesh, largest first, and the finest run of each other one."""
     settings = {}
     for row in rows:
-        settings.setdefault(row.get("setting", "paper"), []).append(row)
+        settings.setdefault(label_of(row, "setting", "paper"), []).append(row)
     paper = settings.pop("paper", [])
     nodes = max((row["nodes"] for row in paper), default=0)
     return (sorted((row for row in paper if row["nodes"] == nodes), key=lambda row: -row["tau"])
@@ -59,7 +59,7 @@ def _meshes(rows):
 
 
 def _figure(rows, strip, notes):
-    labels = [rf"{row.get('setting', 'paper')}, $\tau = {row['tau']:.3g}$" for row in rows]
+    labels = [rf"{label_of(row, 'setting', 'paper')}, $\tau = {row['tau']:.3g}$" for row in rows]
     lines = style.line_styles(len(rows))
     above = strip.height + 0.14 if strip else 0.0
     figure, ((left, middle, right),) = time_series.panels([[AREA, VOLUME, ELONGATION]],

@@ -52,9 +52,21 @@ def _check_row(row, place, usable):
         value = row.get(key)
         if not isinstance(value, (int, float)) or not (0 < value < math.inf):
             raise TableError(f"{place}: {key} is {json.dumps(value)}, expected a positive number")
+    if not isinstance(row.get("labels", {}), dict):
+        raise TableError(f"{place}: labels is {json.dumps(row['labels'])}, expected an object")
     errors = row.get("errors")
     if not isinstance(errors, dict) or not all(isinstance(norms, dict) for norms in errors.values()):
         raise TableError(f"{place}: errors is not an object {{quantity: {{norm: value}}}}")
+
+
+def label_of(row, name, otherwise=None):
+    """A label of the run, a string or a number."""
+    return row.get("labels", {}).get(name, otherwise)
+
+
+def label_text(labels):
+    """Labels for people: "bdf 4, flow dziuk"."""
+    return ", ".join(f"{name} {value}" for name, value in sorted(labels.items()))
 
 
 def succeeded(row):

@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 
 import cahn_hilliard_ellipsoid
-from table import SCHEMA, TableError
+from table import SCHEMA, TableError, label_of
 from testing import data_lines, figure_named, run_script, slopes_of, texts_of
 
 SHARES = {"u": 0.75, "w": 0.25}
@@ -30,8 +30,8 @@ def ellipsoid_table(levels=5, exponents=range(1, 8)):
                               for norm, p in (("L2", 2), ("H1", h1))} for q, share in SHARES.items()}
                 if run != "ritz_theta":
                     errors["u"] = {norm: 1.0 for norm in errors["u"]}
-                rows.append({"cell": f"{run}_p{degree}_bdf{bdf}_h{level}_tau{i}", "run": run, "bdf": str(bdf),
-                             "degree": str(degree), "errors": errors, **mesh})
+                rows.append({"cell": f"{run}_p{degree}_bdf{bdf}_h{level}_tau{i}",
+                             "labels": {"run": run, "bdf": bdf, "degree": degree}, "errors": errors, **mesh})
     return {"schema": SCHEMA, "experiment": "cahn_hilliard_ellipsoid", "paper": "bk22", "parameters": {}, "rows": rows}
 
 
@@ -62,13 +62,13 @@ class CahnHilliardEllipsoid(unittest.TestCase):
 
     def test_the_nodal_h1_norm_is_one_order_better_in_space(self):
         table = ellipsoid_table(4, (5, 6, 7))
-        table["rows"] = [row for row in table["rows"] if row["bdf"] == "3"]
+        table["rows"] = [row for row in table["rows"] if label_of(row, "bdf") == 3]
         figures = dict(cahn_hilliard_ellipsoid.draw(table, "nodal"))
         self.assertEqual(slopes_of(figures["bk22/fig4"]), [["$O(h^{2})$"], ["$O(h^{2})$", "$O(h^{1})$"]])
         self.assertEqual(slopes_of(figures["bk22/fig5"]), [[r"$O(\tau^{3})$"]] * 2)
 
     def test_the_error_is_the_sum_of_u_and_w_in_the_norm_of_the_panel(self):
-        table = {**self.table, "rows": [row for row in self.table["rows"] if row["bdf"] == "3"]}
+        table = {**self.table, "rows": [row for row in self.table["rows"] if label_of(row, "bdf") == 3]}
         for kind, factor, h1 in KINDS:
             figure = figure_named("bk22/fig5", cahn_hilliard_ellipsoid.draw(table, kind))
             self.assertEqual([axes.get_title() for axes in figure.axes],
@@ -83,7 +83,7 @@ class CahnHilliardEllipsoid(unittest.TestCase):
     def test_a_missing_quantity_is_no_smaller_error(self):
         table = ellipsoid_table(2, (1, 2))
         del row_of(table, "ritz_theta_p1_bdf3_h0_tau1")["errors"]["w"]
-        table["rows"] = [row for row in table["rows"] if row["bdf"] == "3"]
+        table["rows"] = [row for row in table["rows"] if label_of(row, "bdf") == 3]
         figure = figure_named("bk22/fig5", cahn_hilliard_ellipsoid.draw(table, "lifted"))
         self.assertEqual(len(data_lines(figure.axes[0])[0].get_xdata()), 1)
         self.assertIn("1 of $L^\\infty(L^2)$", texts_of(figure))
@@ -103,21 +103,22 @@ class CahnHilliardEllipsoid(unittest.TestCase):
             return dict(cahn_hilliard_ellipsoid.draw(table, "lifted"))
 
         self.assertEqual(len(drawn(lambda row: True)), 4)
-        self.assertEqual(list(drawn(lambda row: row["bdf"] == "3")), ["bk22/fig4", "bk22/fig5"])
-        for without in (lambda row: row["run"] != "ritz_theta", lambda row: row["bdf"] == "2"):
+        self.assertEqual(list(drawn(lambda row: label_of(row, "bdf") == 3)), ["bk22/fig4", "bk22/fig5"])
+        for without in (lambda row: label_of(row, "run") != "ritz_theta", lambda row: label_of(row, "bdf") == 2):
             with self.assertRaisesRegex(TableError, 'no rows with run "ritz_theta"'):
                 drawn(without)
 
     def test_quadratic_runs_alone_have_the_slopes_of_their_degree(self):
         table = ellipsoid_table(3, (1, 2, 3))
-        table["rows"] = [dict(row, bdf="3") for row in table["rows"] if row["degree"] == "2"]
+        table["rows"] = [dict(row, labels={**row["labels"], "bdf": 3}) for row in table["rows"]
+                         if label_of(row, "degree") == 2]
         figure = figure_named("bk22/fig4", cahn_hilliard_ellipsoid.draw(table, "lifted"))
         self.assertEqual(slopes_of(figure), [["$O(h^{3})$"], ["$O(h^{2})$"]])
 
     def test_a_figure_without_anything_to_show_is_an_error(self):
         table = ellipsoid_table(2, (1, 2))
         for row in table["rows"]:
-            if row["bdf"] == "3":
+            if label_of(row, "bdf") == 3:
                 row.update(status="failed: why", errors={})
         with self.assertRaisesRegex(TableError, "no errors of u and w in the norm lifted_L2 with BDF3"):
             list(cahn_hilliard_ellipsoid.draw(table, "lifted"))

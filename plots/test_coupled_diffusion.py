@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 
 import coupled_diffusion
-from table import SCHEMA, TableError
+from table import SCHEMA, TableError, label_of
 from testing import data_lines, figure_named, run_script, slopes_of
 
 
@@ -23,13 +23,15 @@ def diffusion_table(levels=5, exponents=6):
             errors = {q: {f"{kind}_{norm}": factor * (4 * tau**3 + 0.03 * h**p) for kind in ("nodal", "lifted")
                           for norm, p in (("L2", 3), ("H1", 2), ("H1_semi", 2))}
                       for q, factor in (("x", 1), ("v", 3), ("u", 2.5))}
-            rows.append({"cell": f"h{level}_tau{k}", "run": "convergence", "bdf": "3", "errors": errors, **mesh})
-            for bdf in ("2", "3", "4") if level == min(2, levels - 1) else ("3",):
-                size = (0, 0, 2, 6, 25)[int(bdf)] * tau**(int(bdf) - 1)
-                rows.append({"cell": f"difference_bdf{bdf}_h{level}_tau{k}", "run": "difference", "bdf": bdf, **mesh,
+            rows.append({"cell": f"h{level}_tau{k}", "labels": {"run": "convergence", "bdf": 3}, **mesh,
+                         "errors": errors})
+            for bdf in (2, 3, 4) if level == min(2, levels - 1) else (3,):
+                size = (0, 0, 2, 6, 25)[bdf] * tau**(bdf - 1)
+                rows.append({"cell": f"difference_bdf{bdf}_h{level}_tau{k}",
+                             "labels": {"run": "difference", "bdf": bdf}, **mesh,
                              "errors": {"u_difference": {"nodal_L2": 0.4 * size, "nodal_H1": size}},
                              "values": {"seconds_ratio": 1.3 + 0.1 * (k % 3)}})
-            rows.append({"cell": f"none_h{level}_tau{k}", "run": "none", "bdf": "3", **mesh,
+            rows.append({"cell": f"none_h{level}_tau{k}", "labels": {"run": "none", "bdf": 3}, **mesh,
                          "errors": {"u": {"nodal_L2": 1.0}}})
     return {"schema": SCHEMA, "experiment": "coupled_diffusion", "paper": "nick18", "parameters": {}, "rows": rows}
 
@@ -57,8 +59,8 @@ class CoupledDiffusion(unittest.TestCase):
         cubic = copy.deepcopy(self.table)
         cubic["parameters"]["degree"] = 3
         for row in cubic["rows"]:
-            row["bdf"] = "4"
-        cubic["rows"] = [row for row in cubic["rows"] if row["run"] == "convergence"]
+            row["labels"]["bdf"] = 4
+        cubic["rows"] = [row for row in cubic["rows"] if label_of(row, "run") == "convergence"]
         figures = dict(coupled_diffusion.draw(cubic, "lifted"))
         self.assertEqual(slopes_of(figures["nick18/fig1"]), [[r"$O(\tau^{4})$"]] * 2)
         self.assertEqual([slopes[-1] for slopes in slopes_of(figures["nick18/fig2"])], ["$O(h^{4})$", "$O(h^{3})$"])
@@ -67,7 +69,7 @@ class CoupledDiffusion(unittest.TestCase):
         table = diffusion_table(2, 2)
         for i, kind in enumerate(("nodal", "lifted")):
             for row in table["rows"]:
-                if row["run"] == "convergence":
+                if label_of(row, "run") == "convergence":
                     row["errors"]["u"].update({f"{kind}_L2": 0.01 + i, f"{kind}_H1_semi": 0.03 + i})
         for i, kind in enumerate(("nodal", "lifted")):
             panels = figure_named("nick18/fig3", coupled_diffusion.draw(table, kind)).axes
@@ -89,9 +91,9 @@ class CoupledDiffusion(unittest.TestCase):
 
     def test_the_price_is_the_median_of_the_runs_with_bdf3(self):
         table = diffusion_table(1, 3)
-        table["rows"] = [row for row in table["rows"] if row["run"] == "difference"]
+        table["rows"] = [row for row in table["rows"] if label_of(row, "run") == "difference"]
         for row in table["rows"]:
-            if row["bdf"] != "3":
+            if label_of(row, "bdf") != 3:
                 row["values"]["seconds_ratio"] = 7
         self.assertIn("(7.2) takes 1.40 times as long as (2.19): the median of 3 runs with BDF3.",
                       self.notes(figure_named("nick18/fig5", coupled_diffusion.draw(table, "lifted"))))
@@ -117,20 +119,21 @@ class CoupledDiffusion(unittest.TestCase):
             return dict(coupled_diffusion.draw(table, "lifted"))
 
         self.assertEqual(len(drawn(lambda row: True, 1, 1)), 5)
-        self.assertEqual(list(drawn(lambda row: row["run"] == "difference")), ["nick18/fig5"])
-        self.assertEqual(list(drawn(lambda row: row["run"] == "convergence")), [f"nick18/fig{n}" for n in range(1, 5)])
-        self.assertEqual(len(drawn(lambda row: row["bdf"] == "3")["nick18/fig5"].axes), 2)
-        only2 = drawn(lambda row: row["bdf"] == "2")["nick18/fig5"]
+        self.assertEqual(list(drawn(lambda row: label_of(row, "run") == "difference")), ["nick18/fig5"])
+        self.assertEqual(list(drawn(lambda row: label_of(row, "run") == "convergence")),
+                         [f"nick18/fig{n}" for n in range(1, 5)])
+        self.assertEqual(len(drawn(lambda row: label_of(row, "bdf") == 3)["nick18/fig5"].axes), 2)
+        only2 = drawn(lambda row: label_of(row, "bdf") == 2)["nick18/fig5"]
         self.assertEqual(slopes_of(only2), [[r"$O(\tau^{1})$"], []])
         with self.assertRaisesRegex(TableError, "no rows with run"):
-            drawn(lambda row: row["run"] == "none")
+            drawn(lambda row: label_of(row, "run") == "none")
 
     def test_a_figure_without_anything_to_show_is_an_error(self):
         for kind, words in (("difference", "u_difference"), ("convergence", "x in the norm lifted_L2")):
             table = diffusion_table(2, 2)
             for row in table["rows"]:
-                if row["run"] == kind:
-                    row.update(status="failed: why", errors={}, bdf="2")
+                if label_of(row, "run") == kind:
+                    row.update(status="failed: why", errors={}, labels={"run": kind, "bdf": 2})
             with self.assertRaisesRegex(TableError, f"no errors of {words}"):
                 list(coupled_diffusion.draw(table, "lifted"))
 

@@ -5,7 +5,7 @@ import tempfile
 import unittest
 
 import mcf_competitors
-from table import SCHEMA, TableError
+from table import SCHEMA, TableError, label_of
 from testing import run_script, texts_of
 
 VARIANTS = (("kll19", 2, 3), ("dziuk", 2, 3), ("dziuk", 2, 1), ("bgn", 2, 1), ("bgn", 1, 1))
@@ -15,9 +15,9 @@ def competitor_row(surface, variant, level, k, **changes):
     scheme, degree, bdf = variant
     seconds = {"kll19": 2, "dziuk": 1, "bgn": 40}[scheme] * 0.01 * 2**(level + k)
     error = 0.1 * 2.0**(-bdf * k) + 0.01 * 2.0**(-1.5 * level)
-    return {"cell": f"{surface}_{scheme}_p{degree}_bdf{bdf}_h{level}_tau{k}", "surface": surface, "scheme": scheme,
-            "degree": str(degree), "bdf": str(bdf), "level": level, "h": 0.5 * 2**(-level / 2),
-            "nodes": 1000 * 2**level, "tau": 0.05 / 2**k, "steps": 12 * 2**k, "status": "ok",
+    return {"cell": f"{surface}_{scheme}_p{degree}_bdf{bdf}_h{level}_tau{k}",
+            "labels": {"surface": surface, "scheme": scheme, "degree": degree, "bdf": bdf}, "level": level,
+            "h": 0.5 * 2**(-level / 2), "nodes": 1000 * 2**level, "tau": 0.05 / 2**k, "steps": 12 * 2**k, "status": "ok",
             "errors": {"x": {"nodal_L2": error, "nodal_H1": 3 * error}},
             "values": {"seconds_of_steps": seconds, "distance": error / 5}, **changes}
 
@@ -69,7 +69,7 @@ class Competitors(unittest.TestCase):
         self.assertIn("H^1", draw(self.table["rows"], "nodal_H1").axes[0].get_ylabel())
 
     def test_failed_runs_are_counted_and_a_surface_may_be_missing(self):
-        rows = [row for row in self.table["rows"] if row["surface"] == "sphere"]
+        rows = [row for row in self.table["rows"] if label_of(row, "surface") == "sphere"]
         rows[0] = {**rows[0], "status": "failed: singular"}
         figure = draw(rows)
         self.assertEqual(len(figure.axes), 2)

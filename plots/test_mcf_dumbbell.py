@@ -10,7 +10,7 @@ import numpy as np
 
 import mcf_dumbbell
 from snapshots import Snapshots
-from table import SCHEMA, TableError
+from table import SCHEMA, TableError, label_of
 from testing import lines_of, run_script, sphere
 
 
@@ -20,7 +20,7 @@ def dumbbell_row(method, start="cascade", tau=0.003, level=1, end=0.078, **chang
     if method.startswith("kll"):
         columns.update(min_nu=1 - t, max_nu=1 + 20 * t)
     cell = f"{method}_h{level}_{start.replace(':', '')}_{tau:g}"
-    row = {"cell": cell, "method": method, "start": start, "level": level, "h": 0.18 / 2**level,
+    row = {"cell": cell, "labels": {"method": method, "start": start}, "level": level, "h": 0.18 / 2**level,
            "nodes": 3002 if level == 0 else 10522, "tau": tau, "steps": len(t) - 1, "errors": {},
            "status": f"singular at t = {end:g} (step {len(t)}): why", "values": {"pinch_time": end},
            "series": {name: values.tolist() for name, values in columns.items()},
@@ -71,7 +71,7 @@ class Dumbbell(unittest.TestCase):
         finer = [*rows, dumbbell_row("bgn", "none", 0.000375)]
         self.assertEqual(mcf_dumbbell.good_setting(finer).runs["bgn"]["tau"], 0.000375)
         self.assertTrue(all(row["level"] == 1 for setting in (paper, good) for row in setting.runs.values()))
-        self.assertIsNone(mcf_dumbbell.good_setting([row for row in rows if row["start"] == "cascade"]))
+        self.assertIsNone(mcf_dumbbell.good_setting([row for row in rows if label_of(row, "start") == "cascade"]))
         self.assertIsNone(mcf_dumbbell.paper_setting([{**row, "status": "failed: why"} for row in rows]))
 
     def test_headings_say_mesh_step_and_start(self):

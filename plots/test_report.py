@@ -26,7 +26,7 @@ def claim(name, basis="statement", where="§13.1, Fig. 13.1", paper="kll19", **c
     """A verdict as check_orders writes it."""
     made = {"id": name, "statement": f"statement of {name}", "source": {"paper": paper, "place": where, "basis": basis},
             "kind": "order", "quantity": "x", "norm": "nodal_H1", "variable": "tau", "met": True, "finding": "",
-            "measured": "2.95 [2.79, 3.11]", "expected": ">= 2.5", "rows_used": 30, "variant": "flow=mean_curvature",
+            "measured": "2.95 [2.79, 3.11]", "expected": ">= 2.5", "rows_used": 30, "where": {"flow": "mean_curvature"}, "figures": ["13.1"] if "13.1" in where else [],
             "reason": "", "remark": ""}
     return made | changes
 
@@ -55,15 +55,14 @@ class Words(unittest.TestCase):
         self.assertEqual(self.verdict_of(holds, claim("c", finding="corrected")), "corrected")
         self.assertEqual(self.verdict_of(fails, claim("d", met=False)), "claim not met")
 
-    def test_figures_of_a_place(self):
-        for where, numbers in {"§9.1, Figs. 2 and 4": ["2", "4"], "§13.2, Fig. 13.4, 13.5": ["13.4", "13.5"],
-                               "§7.1, Fig. 7.4, Theorem 4.1": ["7.4"], "Theorem 6.1": [], "§9.1, Fig. 4; Theorem 4.1": ["4"]
-                               }.items():
-            self.assertEqual(Statement("mcf_sphere", [claim("a", where=where)]).figures, numbers, where)
+    def test_a_statement_is_of_a_family_when_all_of_its_checks_are(self):
+        members = [claim("a", family="orders"), claim("b", family="orders")]
+        self.assertEqual(Statement("mcf_sphere", members).family, "orders")
+        self.assertEqual(Statement("mcf_sphere", [*members, claim("c")]).family, "")
 
     def test_claims_of_one_sentence_are_one_statement(self):
         same = [claim("a"), claim("b", statement="statement of a", norm="nodal_L2"), claim("c")]
-        self.assertEqual([len(statement.claims) for statement in grouped("mcf_sphere", same)], [2, 1])
+        self.assertEqual([len(statement.claims) for statement in grouped("mcf_sphere", same, {})], [2, 1])
 
 
 class Page(html.parser.HTMLParser):
@@ -96,11 +95,11 @@ class Report(unittest.TestCase):
         table = synthetic_table((0.49, 0.35), range(3))
         table["parameters"]["preset"] = "paper"
         table["fits"] = [{"quantity": "x", "norm": "lifted_H1", "variable": "tau", "order": 2.9, "ci95": [2.8, 3.0],
-                          "variant": "flow=mean_curvature"}]
+                          "labels": {"flow": "mean_curvature"}}]
         table["provenance"] = {"git": "0123456789abcdef", "dirty": False, "date": "2024-02-03T04:05:06Z", "command": "mcf_sphere"}
         table["rows"][0]["status"] = "failed: step 3, t = 0.1: degenerate element 7"
         self.write("table.json", table)
-        self.write("reference/mcf_sphere.json", {"claims": [{}] * 5})
+        self.write("reference/mcf_sphere.json", {})
         figure = Figure(figsize=(2, 1))
         figure.add_subplot().plot([0, 1])
         style.save(figure, os.path.join(self.folder, "figures/kll19/fig13_1"))
@@ -114,7 +113,8 @@ class Report(unittest.TestCase):
 
     def verdicts(self, *claims, schema="esfem-verdicts/1"):
         table = {"experiment": "mcf_sphere", "paper": "kll19", "table": os.path.join(self.folder, "table.json"),
-                 "claims": list(claims)}
+                 "claims": list(claims), "elsewhere": 1,
+                 "families": {"orders": {"statement": "order q in tau", "met": 1, "claims": 2}}}
         return self.write("verdicts.json", {"schema": schema, "tables": [table]})
 
     def page(self, *claims):
@@ -137,10 +137,26 @@ class Report(unittest.TestCase):
 
     def test_every_statement_has_one_place(self):
         self.page(claim("a"), claim("b", where="§14"), claim("c", "finding", "own runs", "esfem"),
-                  claim("d", "independent", "a table, Fig. 13.2", "independent"))
+                  claim("d", "independent", "a table", "independent", figures=["13.2"]))
         placed = place(self.results)
         self.assertEqual({key: len(statements) for key, statements in placed.items()},
                          {("kll19", "13.1"): 1, ("kll19", ""): 1, ("kll19", "mcf_sphere"): 1, ("kll19", "13.2"): 1})
+
+    def test_a_figure_that_does_not_exist_is_an_error(self):
+        for wrong in (claim("a", figures=["13.9"]), claim("a", figures=["7.1"]), claim("a", figures=["13.1", "1"])):
+            with self.assertRaisesRegex(TableError, r"mcf_sphere: claim a: there is no figure .* of kll19; known are 13.1, "):
+                self.page(wrong)
+
+    def test_a_family_is_one_line_that_opens_to_its_members(self):
+        page, words = self.page(claim("a", family="orders"), claim("b", family="orders", met=False, reason="too low"),
+                                claim("c"))
+        self.assertIn("order q in τ: 1 of 2 met", words)
+        self.assertIn("2 of 3 checks met", words)
+        family = page[page.index('<details class="family">'):]
+        family = family[:family.index("</details>")]
+        for inside in ("statement of a", "statement of b", "too low", "claim not met"):
+            self.assertIn(inside, family)
+        self.assertNotIn("statement of c", family)
 
     def test_exports(self):
         self.page(claim("a", remark="50%"), claim("b", statement="|nu_h| >= 1 & ²"))
@@ -148,7 +164,7 @@ class Report(unittest.TestCase):
         self.assertEqual(files["claims.csv"].count("\n"), 3)
         self.assertIn("mcf_sphere,a,kll19,", files["claims.csv"])
         self.assertIn(r"$|$nu\_h$|$ $>$= 1 \& $^2$", files["claims.tex"])
-        self.assertIn("mcf_sphere,flow=mean_curvature,x,lifted_H1,tau,2.900,2.800,3.000", files["orders.csv"])
+        self.assertIn("mcf_sphere,flow mean_curvature,x,lifted_H1,tau,2.900,2.800,3.000", files["orders.csv"])
         for name, text_ in files.items():
             if name.endswith("tex"):
                 widths = {line.replace(r"\&", "").count("&") for line in text_.splitlines() if line.endswith(r"\\")
@@ -174,10 +190,10 @@ class Report(unittest.TestCase):
         incomplete = self.run_report(self.verdicts(claim("a")), "--without-pdf", "--expect", "everything")
         self.assertEqual(incomplete.returncode, 1)
         self.assertEqual(self.run_report(self.verdicts(claim("a")), "--without-pdf", "--expect", "tables").returncode, 0)
-        self.write("reference/mcf_dumbbell.json", {"claims": [{}]})
+        self.write("reference/mcf_dumbbell.json", {})
         no_table = self.run_report(self.verdicts(claim("a")), "--without-pdf", "--expect", "tables")
         self.assertEqual(no_table.returncode, 1)
-        self.assertIn("results of mcf_dumbbell (1 claims)", no_table.stdout)
+        self.assertIn("results of mcf_dumbbell", no_table.stdout)
 
     def test_bad_input_is_one_line(self):
         for verdicts in (self.verdicts(claim("a"), schema="other"), os.path.join(self.folder, "none.json")):

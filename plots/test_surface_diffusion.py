@@ -20,16 +20,17 @@ def diffusion_row(level, k, **changes):
     t = np.arange(0, 2 + tau / 2, tau)
     volume = 4.8 * (1 + 1e-2 * tau**2 * (1 - np.exp(-3 * t)))
     area = (36 * math.pi * 4.8**2)**(1 / 3) * (1 + 0.1 * np.exp(-3 * t))
-    return {"cell": f"h{level}_tau{k}", "setting": "paper", "level": level, "h": 0.4 / 2**level,
+    return {"cell": f"h{level}_tau{k}", "labels": {"setting": "paper"}, "level": level, "h": 0.4 / 2**level,
             "nodes": 1026 * 4**level, "tau": tau, "steps": len(t) - 1, "status": "ok", "errors": {},
             "series": {"t": t.tolist(), "area": area.tolist(), "volume": volume.tolist(),
                        "elongation": np.exp(-3 * t).tolist()},
-            "snapshots": [{"t": t, "file": f"surfaces_{i:04d}.vtu"} for i, t in enumerate(TIMES)], **changes}
+            "snapshots": [{"t": t, "file": f"surfaces_{i:04d}.vtu"} for i, t in enumerate(TIMES)]} | changes
 
 
 def diffusion_table():
     rows = [diffusion_row(level, k) for level in range(2) for k in range(3)]
-    rows += [diffusion_row(level, 1, cell=f"relaxed_h{level}", setting="relaxed", snapshots=[]) for level in range(2)]
+    rows += [diffusion_row(level, 1, cell=f"relaxed_h{level}", labels={"setting": "relaxed"}, snapshots=[])
+             for level in range(2)]
     return {"schema": SCHEMA, "experiment": "surface_diffusion", "paper": "kll21", "parameters": {}, "rows": rows}
 
 

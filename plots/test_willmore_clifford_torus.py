@@ -17,21 +17,21 @@ def torus_row(level, k, size, **labels):
     error = size * (h**2.5 + 0.05 * tau)
     errors = {q: {"nodal_H1": c * error, "lifted_H1": 1.1 * c * error} for q, c in (("x", 0.1), ("nu", 0.3), ("H", 1))}
     return {"cell": "_".join(map(str, labels.values())) + f"_h{level}_tau{k}", "level": level, "h": h,
-            "nodes": 1000 * 2**level, "tau": tau, "steps": 5 * 2**k, "status": "ok", "errors": errors, **labels,
+            "nodes": 1000 * 2**level, "tau": tau, "steps": 5 * 2**k, "status": "ok", "errors": errors, "labels": labels,
             "values": {"willmore_energy": TORUS[0] * (1 - 0.05 * h**3)}}
 
 
 def torus_table(levels=4, exponents=6):
-    rows = [torus_row(level, k, size, run="convergence", mesh=mesh, F="extrapolated", bdf="1", theta="no")
+    rows = [torus_row(level, k, size, run="convergence", mesh=mesh, F="extrapolated", bdf=1, theta="no")
             for mesh, size in (("isothermal", 1), ("graded", 7)) for level in range(levels) for k in range(exponents)]
-    rows.append(torus_row(0, 0, 50, run="convergence", mesh="isothermal", F="implicit", bdf="1", theta="no"))
-    rows.append(torus_row(0, 0, 60, run="convergence", mesh="isothermal", F="extrapolated", bdf="1", theta="yes"))
-    rows.append(torus_row(0, 0, 70, run="convergence", mesh="isothermal", F="extrapolated", bdf="2", theta="no"))
+    rows.append(torus_row(0, 0, 50, run="convergence", mesh="isothermal", F="implicit", bdf=1, theta="no"))
+    rows.append(torus_row(0, 0, 60, run="convergence", mesh="isothermal", F="extrapolated", bdf=1, theta="yes"))
+    rows.append(torus_row(0, 0, 70, run="convergence", mesh="isothermal", F="extrapolated", bdf=2, theta="no"))
     for F in ("extrapolated", "implicit"):
-        for bdf in ("1", "2"):
+        for bdf in (1, 2):
             for k in range(exponents):
                 row = torus_row(1, k, 1, run="stability", mesh="graded", F=F, bdf=bdf)
-                if (F == "implicit") != (bdf == "2") and k < 3:
+                if (F == "implicit") != (bdf == 2) and k < 3:
                     row.update(status=f"failed: step {k}, t = {0.31 * (k + 1):g}: element 17 is degenerate", errors={},
                                values={}, h=0, nodes=0)
                 rows.append(row)
@@ -82,8 +82,8 @@ class CliffordTorus(unittest.TestCase):
 
     def test_every_mesh_has_its_own_table(self):
         table = torus_table(2, 3)
-        table["rows"] += [torus_row(2, k, 1, run="stability", F="implicit", bdf="1") for k in range(3)]
-        table["rows"] += [{**torus_row(3, 0, 1, run="stability", F="implicit", bdf="1"), "status": "failed: why"}]
+        table["rows"] += [torus_row(2, k, 1, run="stability", F="implicit", bdf=1) for k in range(3)]
+        table["rows"] += [{**torus_row(3, 0, 1, run="stability", F="implicit", bdf=1), "status": "failed: why"}]
         figure = dict(willmore_clifford_torus.draw(table, "nodal_H1"))["gallery/clifford_torus_stability"]
         self.assertEqual([len(axes.texts) for axes in figure.axes], [12, 3, 1])
         self.assertIn("$N = 4{,}000$ mesh 3", texts_of(figure))
@@ -98,12 +98,12 @@ class CliffordTorus(unittest.TestCase):
         figures = dict(willmore_clifford_torus.draw(table, "nodal_H1"))
         self.assertIn("None of 2 runs finished.", texts_of(figures["kll21/fig7_4"]))
         self.assertEqual(set(cells_of(figures["gallery/clifford_torus_stability"]).values()), {"failed"})
-        row = torus_row(0, 0, 1, run="stability", F="implicit", bdf="1")
+        row = torus_row(0, 0, 1, run="stability", F="implicit", bdf=1)
         for errors in ({}, {"x": {"nodal_H1": None}}):
             figure, = dict(willmore_clifford_torus.draw({"rows": [{**row, "errors": errors}]}, "nodal_H1")).values()
             self.assertEqual(list(cells_of(figure).values()), ["done"])
         with self.assertRaisesRegex(TableError, "no rows with run"):
-            list(willmore_clifford_torus.draw({"rows": [{**row, "run": "other"}]}, "nodal_H1"))
+            list(willmore_clifford_torus.draw({"rows": [{**row, "labels": {"run": "other"}}]}, "nodal_H1"))
 
     def test_the_script_writes_files(self):
         with tempfile.TemporaryDirectory() as folder:

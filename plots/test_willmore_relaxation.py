@@ -9,7 +9,7 @@ import numpy as np
 
 import willmore_relaxation
 from surfaces import Surface
-from table import SCHEMA, TableError
+from table import SCHEMA, TableError, label_of
 from testing import limits_of, lines_of, run_script, sphere, texts_of, write_surface
 from willmore import limit_of
 
@@ -37,8 +37,8 @@ def relaxation_row(surface, setting, end=4.0, **changes):
     limit, drift = limit_of(surface)[0], {"paper": 0.05, "adaptive": 1e-4, "relaxed": 1e-6}[setting]
     columns = {"t": t, "willmore_energy": limit + 12 * np.exp(-3 * t) + drift, "area": 12 - t, "volume": 4 - t,
                "kappa_energy": limit + 12 * np.exp(-3 * t) + 0.01 * drift * (1 + t)}
-    row = {"cell": f"{surface}_{setting}", "surface": surface, "setting": setting, "level": 1, "h": 0.1, "nodes": 4978,
-           "tau": 0.00078125, "steps": round(end / 0.00078125), "status": "ok", "errors": {},
+    row = {"cell": f"{surface}_{setting}", "labels": {"surface": surface, "setting": setting}, "level": 1, "h": 0.1,
+           "nodes": 4978, "tau": 0.00078125, "steps": round(end / 0.00078125), "status": "ok", "errors": {},
            "series": {name: values.tolist() for name, values in columns.items()}}
     if setting == "paper" and surface in willmore_relaxation.PAPER:
         row["snapshots"] = [{"t": t, "file": f"surfaces_{i:04d}.vtu"} for i, t in enumerate(TIMES) if t <= end]
@@ -149,9 +149,9 @@ class Relaxation(unittest.TestCase):
         self.assertEqual([len(lines_of(axes)) for axes in figure.axes], [1])
         exact = {"t": [0, 1], "willmore_energy": [4 * math.pi**2] * 2, "kappa_energy": [None, None]}
         self.assertEqual(len(dict(willmore_relaxation.draw({"rows": [{**row, "series": exact}]}, self.folder))), 1)
-        for other in ({**row, "surface": "cube"}, {**row, "series": {}}, {**row, "status": "failed: why"}):
+        for change in ({"labels": {**row["labels"], "surface": "cube"}}, {"series": {}}, {"status": "failed: why"}):
             with self.assertRaisesRegex(TableError, "no snapshots and no energies"):
-                list(willmore_relaxation.draw({"rows": [other]}, self.folder))
+                list(willmore_relaxation.draw({"rows": [row | change]}, self.folder))
         pictures = relaxation_row("ellipsoid", "paper", series={"t": [0, 4]})
         self.assertEqual(list(dict(willmore_relaxation.draw({"rows": [pictures]}, self.folder))), ["kll21/fig7_5"])
         pictures["snapshots"][2]["file"] = "gone.vtu"
@@ -166,7 +166,7 @@ class Relaxation(unittest.TestCase):
         self.assertIn(r"$\tau = 0.000781$", texts_of(figures["kll21/fig7_5"]))
 
     def test_the_script_writes_files(self):
-        table = {**self.table, "rows": [row for row in self.table["rows"] if row["surface"] == "ellipsoid"]}
+        table = {**self.table, "rows": [row for row in self.table["rows"] if label_of(row, "surface") == "ellipsoid"]}
         result = run_script("willmore_relaxation", table, self.folder)
         self.assertEqual((result.returncode, result.stdout, result.stderr), (0, "", ""))
         written = sorted(os.path.relpath(os.path.join(root, name), self.folder + "/figures")

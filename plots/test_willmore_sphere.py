@@ -8,7 +8,7 @@ import unittest
 import numpy as np
 
 import willmore_sphere
-from table import SCHEMA, TableError
+from table import SCHEMA, TableError, label_of
 from testing import data_lines, figure_named, lines_of, run_script, slopes_of, texts_of
 from willmore import SPHERE, TORUS, limit_of
 
@@ -21,7 +21,7 @@ def convergence_row(level, k, growth, **labels):
               for q, c in (("x", 1), ("nu", 2), ("H", 7))}
     name = "_".join(map(str, labels.values()))
     return {"cell": f"{name}_h{level}_tau{k}", "level": level, "h": h, "nodes": round(482 * 2**level), "tau": tau,
-            "steps": 5 * 2**k, "status": "ok", "errors": errors, **labels,
+            "steps": 5 * 2**k, "status": "ok", "errors": errors, "labels": labels,
             "values": {"willmore_energy": SPHERE[0] * (1 + 0.3 * error), "kappa_energy": SPHERE[0] * (1 - 0.1 * h**4)}}
 
 
@@ -30,8 +30,8 @@ def normals_row(projection, growth, end=1.0):
     drift = growth * 1e-5 * np.expm1(8 * t)
     columns = {"t": t, "min_nu": 1 - drift, "max_nu": 1 + 1.2 * drift, "min_radius": 1 - 0.6 * drift,
                "max_radius": 1 + 0.5 * drift, "willmore_energy": SPHERE[0] * (1 + drift**2 + 0.02 * growth * drift)}
-    return {"cell": f"normals_{projection}", "run": "normals", "projection": projection, "level": 2, "h": 0.25,
-            "nodes": 1914, "tau": 0.025, "steps": 40, "status": "ok", "errors": {}, "values": {},
+    return {"cell": f"normals_{projection}", "labels": {"run": "normals", "projection": projection}, "level": 2,
+            "h": 0.25, "nodes": 1914, "tau": 0.025, "steps": 40, "status": "ok", "errors": {}, "values": {},
             "series": {name: values.tolist() for name, values in columns.items()}}
 
 
@@ -76,7 +76,7 @@ class WillmoreSphere(unittest.TestCase):
     def test_rows_go_to_the_figure_of_their_projection(self):
         for name, projection in (("kll21/fig7_1", "none"), ("kll21/fig7_3", "projected")):
             expected = max(row["errors"]["x"]["nodal_H1"] for row in self.table["rows"]
-                           if row["run"] == "convergence" and row["projection"] == projection)
+                           if row["labels"] == {"run": "convergence", "projection": projection})
             shown = max(line.get_ydata().max() for line in data_lines(self.figures[name].axes[0]))
             self.assertEqual(shown, expected)
 
@@ -98,7 +98,7 @@ class WillmoreSphere(unittest.TestCase):
         self.assertEqual([len(line.get_xdata()) for line in data_lines(figure.axes[3])], [4, 4, 4, 4, 4, 5])
         self.assertEqual([len(line.get_xdata()) for line in data_lines(figure.axes[0])], [4, 4, 5, 5, 5, 5])
         for row in table["rows"]:
-            if row["projection"] == "none":
+            if label_of(row, "projection") == "none":
                 row.update(status="failed: step 3: why", errors={}, values={})
         figures = dict(willmore_sphere.draw(table, "nodal_H1"))
         self.assertEqual(len(figures), 3)
@@ -110,7 +110,7 @@ class WillmoreSphere(unittest.TestCase):
         self.assertEqual(len(dict(willmore_sphere.draw(table, "nodal_H1"))), 3)
         table["rows"] = table["rows"][-1:]
         self.assertEqual(list(dict(willmore_sphere.draw(table, "nodal_H1"))), ["kll21/fig7_2"])
-        table["rows"][0]["run"] = "other"
+        table["rows"][0]["labels"]["run"] = "other"
         with self.assertRaisesRegex(TableError, "no rows with run"):
             list(willmore_sphere.draw(table, "nodal_H1"))
 

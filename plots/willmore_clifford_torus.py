@@ -16,11 +16,11 @@ from matplotlib.patches import FancyBboxPatch
 import style
 from convergence import NORMS
 from script import run
-from table import TableError, succeeded
+from table import TableError, label_of, succeeded
 from willmore import TORUS, errors_and_energy
 
 NORM = "nodal_H1"  # what the authors plot
-PAPER = {"run": "convergence", "F": "extrapolated", "bdf": "1", "theta": "no"}
+PAPER = {"run": "convergence", "F": "extrapolated", "bdf": 1, "theta": "no"}
 FIGURES = {"isothermal": "kll21/fig7_4", "graded": "gallery/clifford_torus_graded"}
 FAILED = {"facecolor": "#F6D8C4", "edgecolor": style.VERMILLION}
 # Dark is accurate; the palest blue is still apart from the colour of failure, and black letters stay readable on all.
@@ -31,9 +31,9 @@ LEFT, RIGHT, CELL, HEADING, AXIS, LINE = 1.25, 0.05, 0.27, 0.24, 0.36, 0.165  # 
 def draw(table, norm):
     """Yields (name, figure) for what the table has. TableError when it has none of these runs."""
     rows = table["rows"]
-    paper = [row for row in rows if all(row.get(key, value) == value for key, value in PAPER.items())]
-    paper = {mesh: [row for row in paper if row.get("mesh") == mesh] for mesh in FIGURES}
-    stability = [row for row in rows if row.get("run") == "stability"]
+    paper = [row for row in rows if all(label_of(row, key, value) == value for key, value in PAPER.items())]
+    paper = {mesh: [row for row in paper if label_of(row, "mesh") == mesh] for mesh in FIGURES}
+    stability = [row for row in rows if label_of(row, "run") == "stability"]
     if not any(paper.values()) and not stability:
         raise TableError('no rows with run "convergence" (BDF1, F "extrapolated", no theta) or "stability"')
     for mesh, figure in FIGURES.items():
@@ -106,7 +106,7 @@ def _meshes(rows):
     """{heading: rows} of one mesh each, coarse to fine."""
     groups = {}
     for row in rows:
-        groups.setdefault((row.get("level", 0), str(row.get("mesh", ""))), []).append(row)
+        groups.setdefault((row.get("level", 0), label_of(row, "mesh", "")), []).append(row)
     tables = {}
     for (level, mesh), group in sorted(groups.items()):
         nodes = [row["nodes"] for row in group if succeeded(row)]
@@ -116,7 +116,7 @@ def _meshes(rows):
 
 
 def _variant(row):
-    return str(row.get("F", "?")), str(row.get("bdf", "?"))
+    return label_of(row, "F", "?"), label_of(row, "bdf", 0)
 
 
 def _rounded(tau):

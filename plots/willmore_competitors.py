@@ -12,24 +12,24 @@ import style
 import time_series
 from convergence import NORMS
 from script import run
-from table import TableError, has_series, series
+from table import TableError, has_series, label_of, series
 from willmore import finest, from_limit, limit_of
 
 ERROR = "x_nodal_H1"
 SURFACES = {"sphere": "sphere", "clifford_torus": "Clifford torus", "ellipsoid": "ellipsoid"}
 SCHEMES = {"kll21": ("KLL", style.BLUE), "dziuk": ("Dziuk", style.VERMILLION), "bgn": ("BGN", style.PURPLE)}
-DEGREES = {"2": ("quadratic", style.DASHES["solid"]), "1": ("linear", style.DASHES["dashed"])}
+DEGREES = {2: ("quadratic", style.DASHES["solid"]), 1: ("linear", style.DASHES["dashed"])}
 # The energy of the discrete surface is the same functional for all schemes; W(H_h) is of a scheme's own H_h.
 ENERGIES = ("kappa_energy", "willmore_energy")
 
 
 def draw(table, folder):
     """Yields (name, figure). TableError when there is nothing to show; `folder` is not needed."""
-    rows = [row for row in table["rows"] if row.get("scheme") in SCHEMES and row.get("surface") in SURFACES
-            and str(row.get("degree")) in DEGREES]
+    rows = [row for row in table["rows"] if label_of(row, "scheme") in SCHEMES
+            and label_of(row, "surface") in SURFACES and label_of(row, "degree") in DEGREES]
     runs = {}
     for row in filter(has_series, rows):
-        runs.setdefault((row["surface"], row["scheme"], str(row["degree"])), []).append(row)
+        runs.setdefault(tuple(label_of(row, name) for name in ("surface", "scheme", "degree")), []).append(row)
     runs = {key: finest(runs[key]) for key in sorted(runs, key=_order)}
     errors = {surface: _of(runs, surface, ERROR) for surface in SURFACES}
     energies = {surface: _of(runs, surface, *ENERGIES) for surface in SURFACES}

@@ -12,7 +12,7 @@ import time_series
 from script import run
 from snapshots import Snapshots, evenly, shared_times, surface_grid
 from surfaces import draw_surface, extent, read_surface, upright_view
-from table import TableError, has_series, series
+from table import TableError, has_series, label_of, series
 from willmore import finest, from_limit, limit_of
 
 STEM = "willmore_relaxation"
@@ -35,8 +35,8 @@ def draw(table, folder):
     """Yields (name, figure) for what the table has; `folder` is the table's. TableError when there is nothing."""
     runs = {}
     for row in table["rows"]:
-        if has_series(row) and row.get("surface") in SURFACES and row.get("setting") in SETTINGS:
-            runs.setdefault((row["surface"], row["setting"]), []).append(row)
+        if has_series(row) and label_of(row, "surface") in SURFACES and label_of(row, "setting") in SETTINGS:
+            runs.setdefault((label_of(row, "surface"), label_of(row, "setting")), []).append(row)
     runs = {key: finest(rows) for key, rows in runs.items()}
     columns = {surface: runs[surface, "paper"] for surface in PAPER if (surface, "paper") in runs}
     columns = {surface: (row, Snapshots(row, folder, STEM)) for surface, row in columns.items()}
@@ -52,7 +52,7 @@ def draw(table, folder):
 
 def _lost(rows, surfaces, settings):
     """Notes on the runs of a figure that failed or stopped early."""
-    of_figure = [row for row in rows if row.get("surface") in surfaces and row.get("setting") in settings]
+    of_figure = [row for row in rows if label_of(row, "surface") in surfaces and label_of(row, "setting") in settings]
     return time_series.stopped_notes(of_figure) + time_series.failure_notes(of_figure)
 
 

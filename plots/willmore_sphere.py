@@ -12,7 +12,7 @@ import numpy as np
 import style
 import time_series
 from script import run
-from table import TableError, has_series, series
+from table import TableError, has_series, label_of, series
 from willmore import SPHERE, errors_and_energy
 
 NORM = "nodal_H1"  # what the authors plot
@@ -28,11 +28,11 @@ def draw(table, norm):
     rows, degree = table["rows"], table.get("parameters", {}).get("degree", 2)
     nothing = True
     for name, projection in (("kll21/fig7_1", "none"), ("kll21/fig7_3", "projected")):
-        chosen = [row for row in rows if row.get("run") == "convergence" and row.get("projection") == projection]
+        chosen = [row for row in rows if label_of(row, "run") == "convergence" and label_of(row, "projection") == projection]
         if chosen:
             nothing = False
             yield name, errors_and_energy(chosen, norm, degree, SPHERE)
-    normals = [row for row in rows if row.get("run") == "normals" and row.get("projection") in PROJECTIONS]
+    normals = [row for row in rows if label_of(row, "run") == "normals" and label_of(row, "projection") in PROJECTIONS]
     if normals:
         nothing = False
         yield "kll21/fig7_2", projections_figure(normals)
@@ -46,11 +46,11 @@ def projections_figure(rows):
     if not shown:
         return style.notice([f"None of {len(rows)} runs finished. The first: {rows[0]['status']}."])
     legend = {label: line for key, (label, line) in PROJECTIONS.items()
-              if any(row["projection"] == key for row in shown)}
+              if any(label_of(row, "projection") == key for row in shown)}
     legend |= {f"{kind}imum": {"color": "black", "linestyle": "none", "markerfacecolor": "white", **marker}
                for kind, marker in MARKERS.items()}
     notes = time_series.failure_notes(rows)
-    notes = [textwrap.shorten(f"{PROJECTIONS[row['projection']][0].capitalize()}: {row['status']}", 140)
+    notes = [textwrap.shorten(f"{PROJECTIONS[label_of(row, 'projection')][0].capitalize()}: {row['status']}", 140)
              for row in shown if row["status"] != "ok"] + notes
     headings = [*PAIRS.values(), "Willmore energy"]
     setting = rf"{style.nodes_label(shown[0]['nodes'])}, $\tau = {shown[0]['tau']:.3g}$"
@@ -73,7 +73,7 @@ def projections_figure(rows):
 def _draw(axes, row, name, end, marker):
     found = series(row, name)
     every = max(round(len(found[0]) / 10), 1) if found else 1
-    line = {**PROJECTIONS[row["projection"]][1], "markerfacecolor": "white", "markevery": every, **marker}
+    line = {**PROJECTIONS[label_of(row, "projection")][1], "markerfacecolor": "white", "markevery": every, **marker}
     return time_series.draw_series(axes, row, name, line, (0, 1.001 * end))
 
 

@@ -61,7 +61,7 @@ Row planned_row(int level, const HalvedSteps& steps, int k, nlohmann::json label
   row.level = level;
   row.tau = steps.tau(k);
   row.steps = steps.count(k);
-  row.more = std::move(labels);
+  row.labels = std::move(labels);
   return row;
 }
 
@@ -73,7 +73,7 @@ void describe_mesh(const Mesh& mesh, Row& row) {
 SnapshotPlan snapshot_plan(const std::string& folder, const std::vector<double>& times,
                            const std::string& flow, const Row& row) {
   if (folder.empty()) return {};
-  nlohmann::json configuration = row.more;
+  nlohmann::json configuration = row.labels;
   configuration.update(
       {{"level", row.level}, {"h", row.h}, {"nodes", row.nodes}, {"tau", row.tau}, {"steps", row.steps}});
   return {folder + "/surfaces.pvd", times, 0, {flow, configuration.dump()}};

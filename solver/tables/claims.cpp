@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solver/error.hpp"
+#include "solver/tables/claim_families.hpp"
 #include "solver/tables/json_reader.hpp"
 
 namespace esfem {
@@ -29,10 +30,9 @@ void read_bounds(const JsonReader& reader, const std::string& name, double& leas
 
 void read_rows(const Json& json, const std::string& where, Claim& claim) {
   const JsonReader reader(json, where + ", rows");
-  reader.accept_only({"tau", "tau_min", "tau_max", "h", "h_min", "h_max", "variant", "from_step"});
+  reader.accept_only({"tau", "tau_min", "tau_max", "h", "h_min", "h_max", "from_step"});
   read_bounds(reader, "tau", claim.rows.tau_min, claim.rows.tau_max);
   read_bounds(reader, "h", claim.rows.h_min, claim.rows.h_max);
-  if (reader.has("variant")) claim.variant = reader.text("variant");
   if (reader.has("from_step")) claim.from_step = reader.integer("from_step");
   if (claim.from_step < 0) throw InputError(reader.where() + ": 'from_step' is negative");
 }
@@ -45,6 +45,13 @@ void read_presets(const JsonReader& reader, Claim& claim) {
   }
   if (claim.presets.empty())
     throw InputError(reader.where() + ": 'presets' is empty: the claim would never be checked");
+}
+
+void read_figures(const JsonReader& reader, Claim& claim) {
+  for (const Json& figure : reader.array("figures")) {
+    if (!figure.is_string()) reader.wrong_type("figures", "numbers as strings, such as \"13.1\"", figure);
+    claim.figures.push_back(figure);
+  }
 }
 
 void read_order(const JsonReader& reader, Claim& claim) {
@@ -97,13 +104,18 @@ Claim claim_from_json(const Json& json, const std::string& place) {
   claim.statement = reader.text("statement");
   read_source(JsonReader(reader.object("source"), reader.where() + ", source"), claim);
   claim.quantity = reader.text("quantity");
+  if (reader.has("where")) {
+    claim.where = reader.object("where");
+    require_labels(claim.where, reader.where() + ", where");
+  }
   if (reader.has("rows")) read_rows(reader.object("rows"), reader.where(), claim);
   if (reader.has("presets")) read_presets(reader, claim);
+  if (reader.has("figures")) read_figures(reader, claim);
 
   read_finding(reader, claim);
 
-  std::set<std::string> known = {"id",   "statement", "source",  "kind",    "quantity",
-                                 "rows", "presets",   "at_most", "finding", "remark"};
+  std::set<std::string> known = {"id",   "statement", "source",  "kind",    "quantity", "where",
+                                 "rows", "presets",   "figures", "at_most", "finding",  "remark"};
   const std::string kind = reader.text("kind");
   if (kind == "order") {
     known.insert({"variable", "expected", "tolerance"});
@@ -127,8 +139,34 @@ struct Selection {
   std::vector<double> h, tau, number;
 };
 
+bool has_label(const Row& row, const std::string& name, const Json& value) {
+  const auto label = row.labels.find(name);
+  return label != row.labels.end() && *label == value;
+}
+
+/// Throws InputError, which names the key, when no row has a label or a value that the claim asks for.
+void require_known_labels(const Claim& claim, const Table& table) {
+  for (const auto& wanted : claim.where.items()) {
+    std::set<std::string> labels, values;
+    bool found = false;
+    for (const Row& row : table.rows) {
+      found = found || has_label(row, wanted.key(), wanted.value());
+      for (const auto& label : row.labels.items()) {
+        labels.insert(label.key());
+        if (label.key() == wanted.key()) values.insert(label.value().dump());
+      }
+    }
+    if (found) continue;
+    const std::string key =
+        "where: no row has " + std::string(values.empty() ? "the label " : "") + wanted.key();
+    if (values.empty()) throw InputError(key + "; labels of the rows are " + listed(labels));
+    throw InputError(key + " = " + wanted.value().dump() + "; found are " + listed(values));
+  }
+}
+
 bool is_selected(const Row& row, const Claim& claim) {
-  if (!claim.variant.empty() && variant(row) != claim.variant) return false;
+  for (const auto& label : claim.where.items())
+    if (!has_label(row, label.key(), label.value())) return false;
   // A run that failed before h was measured may be one of any h.
   RowRange range = claim.rows;
   if (row.status != "ok" && row.h == 0) range.h_min = 0;
@@ -157,6 +195,7 @@ bool is_complete(const Row& row, const Claim& claim) {
 
 /// Throws InputError when the rows in range are none, of several variants, or do not all have the number.
 Selection select(const Claim& claim, const Table& table) {
+  require_known_labels(claim, table);
   Selection selection;
   std::set<std::string> variants;
   for (const Row& row : table.rows) {
@@ -172,7 +211,7 @@ Selection select(const Claim& claim, const Table& table) {
   if (variants.empty()) throw InputError("no row of the table is in the range of the claim");
   if (variants.size() > 1)
     throw InputError("rows of the variants '" + *variants.begin() + "' and '" + *variants.rbegin() +
-                     "' are in range; rows.variant selects one");
+                     "' are in range; labels in 'where' select one");
   return selection;
 }
 
@@ -218,16 +257,30 @@ Verdict check_bounds(const Claim& claim, const Selection& rows) {
 
 Reference reference_from_json(const Json& json, const std::string& source) {
   const JsonReader reader(json, source);
-  reader.accept_only({"experiment", "paper", "claims"});
+  reader.accept_only({"experiment", "paper", "defaults", "claims"});
   Reference reference;
   reference.experiment = reader.text("experiment");
   reference.paper = reader.text("paper");
+  const Json defaults = reader.has("defaults") ? reader.object("defaults") : Json::object();
   std::set<std::string> ids;
+  std::size_t entries = 0;
   for (const Json& item : reader.array("claims")) {
-    reference.claims.push_back(
-        claim_from_json(item, format("%s, claim %zu", source.c_str(), ids.size() + 1)));
-    if (!ids.insert(reference.claims.back().id).second)
-      throw InputError(source + ": claim '" + reference.claims.back().id + "' occurs twice");
+    const std::string where = format("%s, claim %zu", source.c_str(), ++entries);
+    Json entry = defaults;
+    entry.merge_patch(item);
+    ClaimFamily family;
+    if (entry.is_object() && entry.contains("for"))
+      family = expand_family(entry, where);
+    else
+      family.members = {entry};
+    for (const Json& member : family.members) {
+      reference.claims.push_back(claim_from_json(member, where));
+      reference.claims.back().family = family.id;
+      if (!ids.insert(reference.claims.back().id).second)
+        throw InputError(source + ": claim '" + reference.claims.back().id + "' occurs twice");
+    }
+    if (!family.id.empty() && !reference.families.emplace(family.id, family.statement).second)
+      throw InputError(source + ": family '" + family.id + "' occurs twice");
   }
   if (reference.claims.empty()) throw InputError(source + ": there is no claim");
   return reference;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -20,6 +21,7 @@ namespace esfem {
 struct Claim {
   enum Kind { order, size, value } kind = order;
   std::string id, statement;
+  std::string family;        ///< the id of the family that it is a member of; "": it stands by itself
   std::string paper, place;  ///< source, e.g. "kll19", "§13.1, Fig. 13.1"
   /// What it rests on: "statement" (a sentence or figure of the paper), "theory" (a theorem or an identity),
   /// "independent" (another implementation), "finding" (this project's own).
@@ -31,9 +33,12 @@ struct Claim {
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
   RowRange rows;
-  int from_step = 0;              ///< the maximum over time is over the steps n >= this
-  std::string variant;            ///< as variant(row); "" when all rows in range are of one
+  int from_step = 0;  ///< the maximum over time is over the steps n >= this
+  /// The rows that have these labels; fewer than the rows have, when those that are left are of one variant.
+  nlohmann::json where = nlohmann::json::object();
   std::set<std::string> presets;  ///< where it is checked; empty: everywhere
+  std::vector<std::string>
+      figures;  ///< of the paper, as it numbers them: beside these the report has the claim
   /// What became of the paper's statement, where the bounds are this project's finding: "reproduced",
   /// "reproduced, but", "not reproduced" or "corrected", with the reason; empty: it holds as stated when the
   /// claim is met. A remark may stand alone.
@@ -42,13 +47,16 @@ struct Claim {
 
 /// Contents of reference/<stem>.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
 /// {"paper", "place", "basis"}, "kind": "order" | "size" | "value", "quantity", "norm" (not of a value),
-/// "rows":
-/// {"tau", "tau_min", "tau_max", "h", "h_min", "h_max", "variant", "from_step"}, "presets": [..], ...}]};
-/// order: "variable", "expected", "tolerance", and "at_most" if wanted; size and value: "at_most" and/or
-/// "at_least". rows.tau and rows.h select one value. A claim may have "finding" and "remark".
+/// "where": {"flow": "dziuk", "bdf": 4}, "rows": {"tau", "tau_min", "tau_max", "h", "h_min", "h_max",
+/// "from_step"}, "presets": [..], "figures": ["13.1"], ...}]}; order: "variable", "expected", "tolerance",
+/// and "at_most" if wanted; size and value: "at_most" and/or "at_least". "where" selects rows by their
+/// labels, rows.tau and rows.h one value. A claim may have "finding" and "remark".
+/// An entry with "for" is a family (claim_families.hpp). "defaults" beside "claims" has keys for all of them;
+/// those of a claim come first.
 struct Reference {
   std::string experiment, paper;
-  std::vector<Claim> claims;
+  std::vector<Claim> claims;                    ///< the members of a family one after the other
+  std::map<std::string, std::string> families;  ///< id -> what its members say together
 };
 
 /// Throws InputError naming `source`, the claim and the key; unknown keys are errors, and so is a file
@@ -64,8 +72,8 @@ struct Verdict {
   int rows_used = 0;
 };
 
-/// A claim that nothing can be measured for (no rows in range, a failed one or several variants among them,
-/// no such quantity, round-off, no order determined) is not met.
+/// A claim that nothing can be measured for (a label or value in "where" that no row has, no rows in range, a
+/// failed one or several variants among them, no such quantity, round-off, no order determined) is not met.
 Verdict check_claim(const Claim& claim, const Table& table);
 
 /// Whether the claim is checked at the table's preset, its parameters["preset"]; a table without one is held

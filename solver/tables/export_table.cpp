@@ -55,12 +55,14 @@ std::string csv_number(double value) {
   return std::isfinite(value) ? format("%.17g", value) : "";
 }
 
-/// Keys of Row::more whose values fit into a cell.
+/// The labels of all rows, and further keys whose values fit into a cell.
 std::set<std::string> further_keys(const Table& table) {
   std::set<std::string> keys;
-  for (const Row& row : table.rows)
+  for (const Row& row : table.rows) {
+    for (const auto& item : row.labels.items()) keys.insert(item.key());
     for (const auto& item : row.more.items())
       if (item.value().is_primitive()) keys.insert(item.key());
+  }
   return keys;
 }
 
@@ -78,8 +80,9 @@ double value_of(const Row& row, const std::string& name) {
 }
 
 std::string csv_further(const Row& row, const std::string& key) {
-  const auto value = row.more.find(key);
-  if (value == row.more.end() || !value->is_primitive() || value->is_null()) return "";
+  const nlohmann::json& holder = row.labels.contains(key) ? row.labels : row.more;
+  const auto value = holder.find(key);
+  if (value == holder.end() || !value->is_primitive() || value->is_null()) return "";
   return csv_text(value->is_string() ? value->get<std::string>() : value->dump());
 }
 
@@ -183,7 +186,7 @@ std::string fit_text(const Table& table, Direction direction, const std::vector<
   const std::string name = direction == Direction::tau ? "tau" : "h";
   std::map<std::string, std::map<std::string, double>> orders;
   for (const Fit& fit : table.fits)
-    if (fit.norm == norm && fit.variable == name) orders[fit.variant][fit.quantity] = fit.order;
+    if (fit.norm == norm && fit.variable == name) orders[label_text(fit.labels)][fit.quantity] = fit.order;
   if (orders.empty()) orders[""];
   std::string text;
   for (const auto& [variant, order] : orders) {

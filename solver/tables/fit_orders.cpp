@@ -346,7 +346,7 @@ bool in_range(const Row& row, const RowRange& range) {
 
 namespace {
 
-/// The fits of rows of one variant, without its name.
+/// The fits of rows of one variant, without its labels.
 std::vector<Fit> fit_variant(const std::vector<const Row*>& rows) {
   std::set<std::pair<std::string, std::string>> names;
   for (const Row* row : rows)
@@ -366,10 +366,10 @@ std::vector<Fit> fit_variant(const std::vector<const Row*>& rows) {
     try {
       const OrderFit fit = fit_orders(h, tau, error);
       if (fit.has_h)
-        fits.push_back({quantity, norm, "h", fit.order_h, {fit.ci95_h[0], fit.ci95_h[1]}, fit.rows_used, ""});
+        fits.push_back({quantity, norm, "h", fit.order_h, {fit.ci95_h[0], fit.ci95_h[1]}, fit.rows_used});
       if (fit.has_tau)
         fits.push_back(
-            {quantity, norm, "tau", fit.order_tau, {fit.ci95_tau[0], fit.ci95_tau[1]}, fit.rows_used, ""});
+            {quantity, norm, "tau", fit.order_tau, {fit.ci95_tau[0], fit.ci95_tau[1]}, fit.rows_used});
     } catch (const InputError&) {
     } catch (const NumericsError&) {
     }
@@ -387,7 +387,7 @@ std::vector<Fit> fit_table(const Table& table, const RowRange& range) {
   std::vector<Fit> fits;
   for (const auto& [name, rows] : variants)
     for (Fit fit : fit_variant(rows)) {
-      if (variants.size() > 1) fit.variant = name;
+      if (variants.size() > 1) fit.labels = rows[0]->labels;
       fits.push_back(fit);
     }
   return fits;

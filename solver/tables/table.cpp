@@ -18,9 +18,9 @@ const std::set<std::string> table_keys = {"schema",     "experiment", "paper", "
                                           "provenance", "rows",       "fits"};
 const std::set<std::string> row_keys = {"cell",   "level",  "h",       "nodes",          "tau",
                                         "steps",  "status", "seconds", "peak_memory_mb", "errors",
-                                        "values", "series"};
+                                        "values", "series", "labels"};
 const std::set<std::string> fit_keys = {"quantity", "norm",      "variable", "order",
-                                        "ci95",     "rows_used", "variant"};
+                                        "ci95",     "rows_used", "labels"};
 
 Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -50,6 +50,8 @@ Json to_json(const Row& row) {
   const std::string bad = non_finite_error(row.errors);
   if (status == "ok" && !bad.empty()) status = "failed: error " + bad + " is not finite";
 
+  require_labels(row.labels, where + "labels");
+  json["labels"] = row.labels;
   json["cell"] = row.cell;
   json["level"] = row.level;
   json["h"] = finite_number(row.h, where + "h");
@@ -82,7 +84,8 @@ Json to_json(const Fit& fit) {
       {"order", finite_number(fit.order, where + "order")},
       {"ci95", {finite_number(fit.ci95[0], where + "ci95"), finite_number(fit.ci95[1], where + "ci95")}},
       {"rows_used", fit.rows_used}};
-  if (!fit.variant.empty()) json["variant"] = fit.variant;
+  require_labels(fit.labels, where + "labels");
+  if (!fit.labels.empty()) json["labels"] = fit.labels;
   return json;
 }
 
@@ -91,6 +94,12 @@ double number_or_nan(const JsonReader& reader, const std::string& key, const Jso
   if (value.is_null()) return std::numeric_limits<double>::quiet_NaN();
   if (!value.is_number()) reader.wrong_type(key, "a number or null", value);
   return value;
+}
+
+Json labels_from_json(const JsonReader& reader) {
+  const Json& labels = reader.object("labels");
+  require_labels(labels, reader.where() + ", labels");
+  return labels;
 }
 
 Errors errors_from_json(const JsonReader& row) {
@@ -127,6 +136,7 @@ Row row_from_json(const Json& json, const std::string& where) {
   row.status = reader.text("status");
   row.seconds = reader.number("seconds");
   row.peak_memory_mb = reader.number("peak_memory_mb");
+  row.labels = labels_from_json(reader);
   row.errors = errors_from_json(reader);
   if (reader.has("values"))
     for (const auto& item : reader.object("values").items()) {
@@ -159,7 +169,7 @@ Fit fit_from_json(const Json& json, const std::string& where) {
   fit.ci95[0] = interval[0];
   fit.ci95[1] = interval[1];
   fit.rows_used = reader.integer("rows_used");
-  if (reader.has("variant")) fit.variant = reader.text("variant");
+  if (reader.has("labels")) fit.labels = labels_from_json(reader);
   return fit;
 }
 
@@ -169,12 +179,29 @@ bool failed(const Row& row) {
   return row.status.compare(0, 8, "failed: ") == 0;
 }
 
-std::string variant(const Row& row) {
+std::string label_text(const Json& labels) {
   std::string text;
-  for (const auto& item : row.more.items())
-    if (item.value().is_string())
-      text += (text.empty() ? "" : ", ") + item.key() + "=" + item.value().get<std::string>();
+  for (const auto& item : labels.items()) {
+    const std::string value =
+        item.value().is_string() ? item.value().get<std::string>() : item.value().dump();
+    text += (text.empty() ? "" : ", ") + item.key() + "=" + value;
+  }
   return text;
+}
+
+std::string variant(const Row& row) {
+  return label_text(row.labels);
+}
+
+void require_labels(const Json& labels, const std::string& where) {
+  if (!labels.is_object())
+    throw InputError(where + ": expected an object of strings and numbers, found " + labels.type_name());
+  for (const auto& item : labels.items()) {
+    const Json& value = item.value();
+    if (!value.is_string() && !(value.is_number() && std::isfinite(value.get<double>())))
+      throw InputError(where + ": label '" + item.key() + "': expected a string or a finite number, found " +
+                       value.dump());
+  }
 }
 
 double maximum_from(const Row& row, const std::string& quantity, const std::string& norm, int first) {

@@ -29,15 +29,23 @@ struct Row {
   Errors errors;                         ///< maxima over time
   std::map<std::string, double> values;  ///< other numbers that claims are about (pinch_time, ..)
   std::map<std::string, std::vector<double>> series;  ///< "t" and what was recorded at these times
-  nlohmann::json more = nlohmann::json::object();     ///< further keys of the row (variant, ...)
+  /// What tells the run apart from others beside mesh and step size, as strings and numbers: {"flow":
+  /// "dziuk", "bdf": 4}.
+  nlohmann::json labels = nlohmann::json::object();
+  nlohmann::json more = nlohmann::json::object();  ///< further keys of the row (snapshots, ...)
 };
 
 /// Whether the run of this row failed: it may not have anything but its status.
 bool failed(const Row& row);
 
-/// The variant that a row belongs to: its further keys with string values, as "key=value, key=value"; ""
-/// without such.
+/// Labels for people: "bdf=4, flow=dziuk"; "" without any.
+std::string label_text(const nlohmann::json& labels);
+
+/// The variant that a row belongs to, the text of its labels.
 std::string variant(const Row& row);
+
+/// Throws InputError, headed by `where`, unless `labels` is an object of strings and finite numbers.
+void require_labels(const nlohmann::json& labels, const std::string& where);
 
 /// Maximum over the steps n >= first of the error norm of quantity, from the row's series "quantity_norm".
 /// Throws InputError when the row has no such series or no such step.
@@ -48,7 +56,7 @@ struct Fit {
   std::string quantity, norm, variable;  ///< variable: "h" | "tau"
   double order = 0, ci95[2] = {0, 0};
   int rows_used = 0;
-  std::string variant;  ///< of the rows, as variant(row); "" when the table has but one
+  nlohmann::json labels = nlohmann::json::object();  ///< of the rows; none when the table has but one variant
 };
 
 /// Schema "esfem-table/1" of results/<preset>/<stem>.json. A cell file is a table with one row.
@@ -60,8 +68,8 @@ struct Table {
 };
 
 /// Non-finite errors and series values become null, and a row "ok" with such an error becomes a failed one: a
-/// check must not pass by leaving it out. InputError when another number is not finite or a key in `more` is
-/// one of the row's.
+/// check must not pass by leaving it out. InputError when another number is not finite, a key in `more` is
+/// one of the row's, or labels are none.
 nlohmann::json to_json(const Table& table);
 /// Throws InputError naming `source`, the row and the key when something is missing, of the wrong type or
 /// another schema. null in errors and series is read as NaN (errors: in failed rows only).

@@ -95,7 +95,7 @@ TEST_F(Programs, InitialValuesDifferByWhatTheSchemesSay) {
     EXPECT_NEAR(row.values.at("largest_u0"), 1, 1e-9);
     EXPECT_LT(row.values.at("mass_drift"), 1e-11);
     EXPECT_EQ(row.more.at("snapshots").size(), 5u);
-    const std::string scheme = row.more.at("scheme");
+    const std::string scheme = row.labels.at("scheme");
     EXPECT_EQ(row.values.count("u_difference_L2_at_0"), scheme == "interpolation" ? 0u : 1u);
     if (scheme == "interpolation") continue;
     EXPECT_EQ(row.values.at("u_difference_L2_at_0") == 0, scheme == "interpolation_theta");

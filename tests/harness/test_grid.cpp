@@ -104,11 +104,11 @@ TEST(Grid, ParametersNameTheFilesOrSayHowMeshesAreMade) {
 }
 
 TEST(Grid, PlannedRowSaysWhatIsKnownBeforehand) {
-  const Row row = planned_row(3, {1, 0.1}, 2, {{"flow", "dziuk"}});
+  const Row row = planned_row(3, {1, 0.1}, 2, {{"flow", "dziuk"}, {"bdf", 4}});
   EXPECT_EQ(row.level, 3);
   EXPECT_EQ(row.tau, 0.025);
   EXPECT_EQ(row.steps, 40);
-  EXPECT_EQ(variant(row), "flow=dziuk");
+  EXPECT_EQ(variant(row), "bdf=4, flow=dziuk");
   EXPECT_EQ(row.status, "ok");
   EXPECT_EQ(variant(planned_row(3, {1, 0.1}, 2)), "");
 }

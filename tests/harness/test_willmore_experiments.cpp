@@ -127,7 +127,7 @@ TEST(WillmoreSphere, SaysHowNormalsAndRadiiDevelop) {
     for (const char* name : {"min_nu", "max_nu", "min_radius", "max_radius", "willmore_energy"}) {
       EXPECT_EQ(row.series.at(name).size(), row.series.at("t").size()) << name;
     }
-    const bool projected = row.more.at("projection") == "projected";
+    const bool projected = row.labels.at("projection") == "projected";
     EXPECT_EQ(row.values.at("largest_deviation_of_nu") < 1e-12, projected);
     EXPECT_EQ(row.values.at("largest_deviation_of_radius") < 1e-3, projected);
   }
@@ -139,7 +139,7 @@ TEST(WillmoreCliffordTorus, ImplicitCouplingEndsBeforeItsTime) {
   ASSERT_EQ(table.rows.size(), 2u);
   for (const Row& row : table.rows) {
     SCOPED_TRACE(row.cell);
-    const bool implicit = row.more.at("F") == "implicit";
+    const bool implicit = row.labels.at("F") == "implicit";
     EXPECT_THAT(row.status, StartsWith(implicit ? "singular at t = " : "ok"));
     EXPECT_EQ(row.values.at("end_time") < 1, implicit);
   }

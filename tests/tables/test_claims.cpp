@@ -17,7 +17,7 @@ namespace esfem::test_claims {
 namespace {
 
 using nlohmann::json;
-using testing::AllOf, testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr, testing::Not;
 
 /// Errors 0.03 h^2 + 4 tau^3 of x on the grid h = 0.5 2^(-j/2), tau = 0.2 2^-k.
 Table sample_table() {
@@ -206,12 +206,30 @@ TEST(Claims, VariantsAreNotMixed) {
   Table table = sample_table();
   for (Row row : sample_table().rows) {
     row.cell += "_dziuk";
-    row.more["variant"] = "dziuk";
+    row.labels = {{"flow", "dziuk"}, {"bdf", 2}};
     row.errors["x"]["nodal_H1"] = row.tau;
     table.rows.push_back(row);
   }
-  EXPECT_THAT(check(order_claim(), json::object(), table).reason, HasSubstr("rows.variant"));
-  EXPECT_NEAR(check(order_claim(), {{"rows", {{"variant", "variant=dziuk"}}}}, table).value, 1, 1e-6);
+  EXPECT_THAT(check(order_claim(), json::object(), table).reason, HasSubstr("labels in 'where' select one"));
+  EXPECT_NEAR(check(order_claim(), {{"where", {{"flow", "dziuk"}}}}, table).value, 1, 1e-6)
+      << "one label is enough to tell them apart";
+  EXPECT_TRUE(check(order_claim(), {{"where", {{"bdf", 2.0}}}}, table).measured) << "2.0 is 2";
+  for (Row& row : table.rows) row.labels["bdf"] = 2;
+  EXPECT_THAT(check(order_claim(), {{"where", {{"bdf", 2}}}}, table).reason,
+              AllOf(HasSubstr("'bdf=2'"), HasSubstr("'bdf=2, flow=dziuk'")));
+}
+
+TEST(Claims, LabelsThatNoRowHasAreNamed) {
+  Table table = sample_table();
+  for (Row& row : table.rows) row.labels = {{"flow", "dziuk"}, {"bdf", 2}};
+  const auto reason = [&](const json& where) {
+    return check(order_claim(), {{"where", where}}, table).reason;
+  };
+  EXPECT_EQ(reason({{"flow", "dziuk"}, {"bdf", 2}}), "");
+  EXPECT_THAT(reason({{"flwo", "dziuk"}}),
+              HasSubstr("where: no row has the label flwo; labels of the rows are bdf, flow"));
+  EXPECT_THAT(reason({{"flow", "bgn"}}), HasSubstr("where: no row has flow = \"bgn\"; found are \"dziuk\""));
+  EXPECT_THAT(reason({{"bdf", "2"}}), HasSubstr("where: no row has bdf = \"2\"; found are 2"));
 }
 
 TEST(Claims, PresetsRestrictWhereAClaimIsChecked) {
@@ -260,6 +278,12 @@ TEST(Claims, ReadingNamesClaimAndKey) {
   EXPECT_THAT(with(order_claim(), {{"variable", "t"}}), HasSubstr("expected h or tau"));
   EXPECT_THAT(with(order_claim(), {{"tolerance", "some"}}), HasSubstr("a number"));
   EXPECT_THAT(with(order_claim(), {{"presets", json::array({"chek"})}}), HasSubstr("\"chek\""));
+  EXPECT_THAT(with(order_claim(), {{"where", {{"bdf", json::array({1, 2})}}}}),
+              AllOf(HasSubstr("claim 1 'x-order-tau', where"), HasSubstr("'bdf'"), HasSubstr("[1,2]")));
+  EXPECT_THAT(with(order_claim(), {{"where", "flow=dziuk"}}), HasSubstr("an object"));
+  EXPECT_THAT(with(order_claim(), {{"rows", {{"variant", "flow=dziuk"}}}}),
+              HasSubstr("unknown key 'variant'"));
+  EXPECT_THAT(with(order_claim(), {{"figures", json::array({13.1})}}), HasSubstr("numbers as strings"));
   EXPECT_THAT(with(size_claim(), {{"expected", 3}}), HasSubstr("unknown key 'expected'"));
   json claim = size_claim();
   claim.erase("at_most");
@@ -270,6 +294,20 @@ TEST(Claims, ReadingNamesClaimAndKey) {
   json file = reference({order_claim()});
   file["note"] = "";
   EXPECT_THAT(reading(file), HasSubstr("unknown key 'note'"));
+}
+
+TEST(Claims, HaveTheDefaultsOfTheFile) {
+  json file = reference({order_claim(), size_claim()});
+  file["defaults"] = {{"figures", json::array({"13.1"})},
+                      {"source", {{"basis", "theory"}, {"paper", "nick18"}}}};
+  file["claims"][1]["source"].erase("basis");
+  file["claims"][1]["figures"] = json::array();
+  const std::vector<Claim> claims = reference_from_json(file, "r.json").claims;
+  EXPECT_EQ(claims[0].figures, std::vector<std::string>{"13.1"});
+  EXPECT_EQ(claims[0].basis, "statement") << "its own";
+  EXPECT_EQ(claims[1].basis, "theory");
+  EXPECT_EQ(claims[1].paper, "kll19");
+  EXPECT_TRUE(claims[1].figures.empty());
 }
 
 /// Runs the program on files in a folder of its own.
@@ -312,6 +350,37 @@ TEST_F(CheckOrders, ExitCodesAreTheVerdict) {
   EXPECT_EQ(exit_code("--no-such-option"), exit_usage);
   EXPECT_THAT(output(), HasSubstr("--no-such-option"));
   EXPECT_EQ(exit_code("--help"), exit_done);
+}
+
+/// A family of one claim for each norm; that in L2 is at round-off and not met.
+json family() {
+  json claim = order_claim();
+  claim["id"] = "x-{norm}";
+  claim["statement"] = "x has order 3 in {norm}";
+  claim["norm"] = "nodal_{norm}";
+  claim["for"] = {{"norm", json::array({"H1", "L2"})}};
+  return claim;
+}
+
+TEST_F(CheckOrders, AFamilyIsALineWithThoseThatAreNotMet) {
+  EXPECT_EQ(exit_code_of({family(), size_claim()}), exit_claim);
+  EXPECT_THAT(output(), AllOf(HasSubstr("1 of 2 met"), HasSubstr("x-{norm}: x has order 3 in H1, L2 (kll19"),
+                              HasSubstr("x-L2: x has order 3 in L2"), HasSubstr("2 of 3 claims met")));
+  EXPECT_THAT(output(), Not(HasSubstr("x-H1:"))) << "it is met";
+}
+
+TEST_F(CheckOrders, VerdictsOfAFamilyAreThoseOfItsMembers) {
+  json elsewhere = size_claim();
+  elsewhere["presets"] = json::array({"paper"});
+  exit_code_of({family(), elsewhere});
+  const std::string table = (folder / "table.json").string(), verdicts = (folder / "verdicts.json").string();
+  EXPECT_EQ(exit_code(table + " --output " + verdicts), exit_claim);
+  const json file = read_json(verdicts).at("tables").at(0);
+  ASSERT_EQ(file.at("claims").size(), 2u);
+  for (const json& claim : file.at("claims")) EXPECT_EQ(claim.at("family"), "x-{norm}");
+  EXPECT_EQ(file.at("families").dump(),
+            R"({"x-{norm}":{"claims":2,"met":1,"statement":"x has order 3 in H1, L2"}})");
+  EXPECT_EQ(file.at("elsewhere"), 1);
 }
 
 TEST_F(CheckOrders, VerdictsGoToAFileAsWell) {

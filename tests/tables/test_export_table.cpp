@@ -31,7 +31,7 @@ Table sample_table() {
   table.experiment = "mcf_sphere";
   table.paper = "kll19";
   table.rows = {row("b", 1, 0.5, 0.05, 1e-3), row("a", 1, 0.5, 0.1, 8e-3), row("c", 2, 0.4, 0.1, 0.8 * 8e-3)};
-  table.fits = {{"x", "nodal_L2", "tau", 2.96, {2.9, 3}, 3, ""}};
+  table.fits = {{"x", "nodal_L2", "tau", 2.96, {2.9, 3}, 3}};
   return table;
 }
 
@@ -44,18 +44,20 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 TEST(Csv, HasARowALineAndAnErrorAColumn) {
   Table table = sample_table();
-  table.rows[0].more["variant"] = "a \"b\", c";
+  table.rows[0].labels = {{"variant", "a \"b\", c"}, {"bdf", 3}};
+  table.rows[2].more["note"] = "late";
   table.rows[2].status = "failed: step 2, t = 0.1: degenerate element 7";
   table.rows[2].errors["x"]["nodal_L2"] = std::nan("");
   table.rows[1].errors["nu"]["nodal_H1"] = 0.1;
   EXPECT_THAT(
       lines_of(to_csv(table)),
       ElementsAre(
-          "cell,level,h,nodes,tau,steps,status,seconds,peak_memory_mb,variant,x_nodal_L2,nu_nodal_H1",
-          "b,1,0.5,100,0.050000000000000003,4,ok,0,0,\"a \"\"b\"\", c\",0.001,",
-          "a,1,0.5,100,0.10000000000000001,4,ok,0,0,,0.0080000000000000002,0.10000000000000001",
+          "cell,level,h,nodes,tau,steps,status,seconds,peak_memory_mb,bdf,note,variant,x_nodal_L2,nu_nodal_"
+          "H1",
+          "b,1,0.5,100,0.050000000000000003,4,ok,0,0,3,,\"a \"\"b\"\", c\",0.001,",
+          "a,1,0.5,100,0.10000000000000001,4,ok,0,0,,,,0.0080000000000000002,0.10000000000000001",
           "c,2,0.40000000000000002,200,0.10000000000000001,4,\"failed: step 2, t = 0.1: degenerate element "
-          "7\",0,0,,,"));
+          "7\",0,0,,late,,,"));
 }
 
 TEST(Latex, PrintsOrdersBetweenNeighbours) {
@@ -88,7 +90,7 @@ TEST(Latex, FailedRowsSayWhyAndBreakTheOrders) {
 TEST(Latex, VariantsAreBlocksOfTheirOwn) {
   Table table = sample_table();
   table.rows.push_back(row("e", 1, 0.5, 0.025, 1));
-  table.rows.back().more["variant"] = "dziuk";
+  table.rows.back().labels["variant"] = "dziuk";
   EXPECT_THAT(to_latex(table),
               HasSubstr("$N = 100$, variant=dziuk} \\\\\n$0.025$ & $1.000\\cdot10^{0}$ & -- \\\\\n"));
 }
@@ -98,7 +100,7 @@ TEST(Latex, RowsWithoutErrorsAreNoBlocks) {
   const std::string before = to_latex(table);
   table.rows.push_back(row("d", 1, 0.5, 0.1, 0));
   table.rows.back().errors.clear();
-  table.rows.back().more["flow"] = "cost";
+  table.rows.back().labels["flow"] = "cost";
   EXPECT_EQ(to_latex(table), before);
   table.rows.back().status = "failed: why";
   EXPECT_THAT(to_latex(table), testing::HasSubstr("failed: why"));
@@ -110,8 +112,8 @@ TEST(Latex, OnlyOfWhatIsThere) {
 
 TEST(Latex, EachVariantHasItsFits) {
   Table table = sample_table();
-  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3}, 5, "flow=kll"},
-                {"x", "nodal_L2", "tau", 1.1, {1, 1.2}, 5, "flow=dziuk"}};
+  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3}, 5, {{"flow", "kll"}}},
+                {"x", "nodal_L2", "tau", 1.1, {1, 1.2}, 5, {{"flow", "dziuk"}}}};
   EXPECT_THAT(to_latex(table),
               HasSubstr("\\midrule\nfit, flow=dziuk & & $1.10$ \\\\\nfit, flow=kll & & $2.90$ \\\\\n"));
 }

@@ -249,20 +249,20 @@ TEST(FitTable, LeavesOutFailedRowsAndRowsOutOfRange) {
 
 TEST(FitTable, FitsEachVariantByItself) {
   Table table = table_of(grid(1, 5, 0, 2, 4, 3));
-  EXPECT_EQ(fit_table(table, {})[0].variant, "");
+  EXPECT_TRUE(fit_table(table, {})[0].labels.empty());
   const Table slow = table_of(grid(1, 5, 0, 2, 4, 1));
   for (Row row : slow.rows) {
-    row.more["flow"] = "dziuk";
+    row.labels = {{"flow", "dziuk"}, {"bdf", 4}};
     table.rows.push_back(row);
   }
   const std::vector<Fit> fits = fit_table(table, {});
   ASSERT_EQ(fits.size(), 2u);
-  EXPECT_EQ(fits[0].variant, "");
+  EXPECT_TRUE(fits[0].labels.empty());
   EXPECT_NEAR(fits[0].order, 3, 1e-5);
-  EXPECT_EQ(fits[1].variant, "flow=dziuk");
+  EXPECT_EQ(fits[1].labels.dump(), R"({"bdf":4,"flow":"dziuk"})");
   EXPECT_NEAR(fits[1].order, 1, 1e-5);
   // A row of a third variant has no order of its own and changes none.
-  table.rows[2].more["flow"] = "other";
+  table.rows[2].labels["flow"] = "other";
   EXPECT_EQ(fit_table(table, {}).size(), 2u);
 }
 

@@ -34,7 +34,8 @@ Row sample_row(const std::string& cell, double h, double tau) {
   row.errors["nu"] = {{"nodal_L2", 2e-9}};
   row.series["t"] = {0, 0.05, 0.1};
   row.values["pinch_time"] = 1.0 / 12;
-  row.more["variant"] = "ritz";
+  row.labels = {{"flow", "dziuk"}, {"bdf", 4}};
+  row.more["snapshots"] = json::array({"a.vtu"});
   return row;
 }
 
@@ -45,7 +46,7 @@ Table sample_table() {
   table.parameters = {{"preset", "check"}};
   table.provenance = {{"version", "0.1.0"}};
   table.rows = {sample_row("h1_tau2", 0.4999999999999999, 0.1 / 3), sample_row("h1_tau3", 0.5, 0.05 / 3)};
-  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3.05}, 12, "variant=ritz"}};
+  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3.05}, 12, {{"flow", "dziuk"}, {"bdf", 4}}}};
   return table;
 }
 
@@ -83,14 +84,15 @@ TEST(Table, RoundTripKeepsEveryBit) {
   EXPECT_EQ(again.rows[0].more, table.rows[0].more);
   EXPECT_EQ(again.rows[0].values, table.rows[0].values);
   EXPECT_EQ(again.fits[0].ci95[1], 3.05);
-  EXPECT_EQ(again.fits[0].variant, "variant=ritz");
+  EXPECT_EQ(again.rows[0].labels, table.rows[0].labels);
+  EXPECT_EQ(again.fits[0].labels, table.fits[0].labels);
 }
 
 TEST(Table, HasTheKeysOfTheSchema) {
   const json written = to_json(sample_table());
   EXPECT_EQ(written["schema"], "esfem-table/1");
   EXPECT_EQ(written["rows"][0]["errors"]["x"]["nodal_H1"], 1.0 / 3);
-  EXPECT_EQ(written["rows"][0]["variant"], "ritz");
+  EXPECT_EQ(written["rows"][0]["labels"].dump(), R"({"bdf":4,"flow":"dziuk"})");
   EXPECT_EQ(written["fits"][0]["ci95"], json({2.8, 3.05}));
   for (const char* key :
        {"cell", "level", "h", "nodes", "tau", "steps", "status", "seconds", "peak_memory_mb", "series"})
@@ -134,6 +136,28 @@ TEST(Table, FurtherKeysMustNotHideTheRowsOwn) {
   Table table = sample_table();
   table.rows[0].more["tau"] = 1;
   EXPECT_THAT(input_error([&] { to_json(table); }), HasSubstr("'tau'"));
+}
+
+TEST(Table, LabelsAreStringsAndNumbers) {
+  Table table = sample_table();
+  EXPECT_EQ(variant(table.rows[0]), "bdf=4, flow=dziuk");
+  EXPECT_EQ(label_text({{"radius", 1.5}, {"a", "b"}}), "a=b, radius=1.5");
+  EXPECT_EQ(label_text(json::object()), "");
+  for (const json& bad : {json(nullptr), json(true), json::array({1}), json(nan)}) {
+    table.rows[0].labels["bdf"] = bad;
+    EXPECT_THAT(input_error([&] { to_json(table); }), AllOf(HasSubstr("h1_tau2"), HasSubstr("label 'bdf'")))
+        << bad;
+  }
+  table.rows[0].labels = json::array({1});
+  EXPECT_THAT(input_error([&] { to_json(table); }), HasSubstr("expected an object of strings and numbers"));
+  json written = to_json(sample_table());
+  written["rows"][1]["labels"]["bdf"] = json::array();
+  EXPECT_THAT(reading(written), AllOf(HasSubstr("t.json, row 2, labels"), HasSubstr("'bdf'")));
+  written["rows"][1].erase("labels");
+  EXPECT_THAT(reading(written), HasSubstr("'labels' is missing"));
+  written = to_json(sample_table());
+  written["fits"][0]["labels"] = "bdf=4";
+  EXPECT_THAT(reading(written), HasSubstr("'labels': expected an object"));
 }
 
 TEST(Table, ReadingNamesPlaceAndKey) {
