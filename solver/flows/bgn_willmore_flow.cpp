@@ -2,6 +2,7 @@
 #include "solver/flows/bgn_willmore_flow.hpp"
 
 #include "solver/flows/discrete_curvature.hpp"
+#include "solver/flows/l2_project.hpp"
 #include "solver/flows/regularity.hpp"
 
 namespace esfem {
@@ -66,12 +67,9 @@ BgnWillmoreFlow::State bgn_willmore_state_on(const SurfaceSpace& space, const Fi
   curvature.compute(x);
   WeakWeingarten weingarten(space);
   weingarten.compute(x, curvature.H(), M);
-  Field V;
-  weingarten.assemble_Q(x, curvature.H(), V);
-  V -= A * curvature.H();
-  SpdSolver spd(space.pattern());
-  spd.factorise(1.0, M, 0.0, A);
-  spd.solve(V);
+  Field load;
+  weingarten.assemble_Q(x, curvature.H(), load);
+  const Field V = l2_project(M, load - A * curvature.H());
   return {0, x, V.col(0).asDiagonal() * curvature.nu(), curvature.H()};
 }
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "solver/error.hpp"
+#include "solver/flows/l2_project.hpp"
 #include "solver/flows/plane_waves.hpp"
 #include "solver/flows/regularity.hpp"
-#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -83,11 +83,7 @@ Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u,
                       const Field& load_of_g) {
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
-  Field w = epsilon * (A * u) + load_of_g / epsilon;
-  SpdSolver spd(space.pattern());
-  spd.factorise(1.0, M, 0.0, A);
-  spd.solve(w);
-  return w;
+  return l2_project(M, epsilon * (A * u) + load_of_g / epsilon);
 }
 
 CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,

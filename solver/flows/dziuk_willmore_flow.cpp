@@ -3,9 +3,9 @@
 
 #include "solver/error.hpp"
 #include "solver/flows/discrete_curvature.hpp"
+#include "solver/flows/l2_project.hpp"
 #include "solver/flows/regularity.hpp"
 #include "solver/linalg/node_block_lu.hpp"
-#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -218,12 +218,11 @@ DziukWillmoreFlow::State dziuk_willmore_state_on(const SurfaceSpace& space, cons
   DiscreteCurvature curvature(space);
   curvature.compute(x);
   DziukWillmoreFlow::State state{0, x, {}, -curvature.kappa()};
-  assemble_willmore_force(space, x, state.w, state.v);
+  Field force;
+  assemble_willmore_force(space, x, state.w, force);
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
-  SpdSolver spd(space.pattern());
-  spd.factorise(1.0, M, 0.0, A);
-  spd.solve(state.v);
+  state.v = l2_project(M, std::move(force));
   return state;
 }
 

@@ -62,6 +62,26 @@ void set_position_and_normal(const SurfacePoints& at, int x, int nu, FieldsAtPoi
 
 }  // namespace
 
+ExactEvolution round_sphere(const std::function<double(double t)>& radius,
+                            const std::function<double(double R)>& outward_speed, const std::string& scalar,
+                            const std::function<double(double R)>& scalar_of) {
+  ExactEvolution exact;
+  exact.quantities = {{"x", 3}, {"v", 3}, {"nu", 3}, {scalar, 1}};
+  exact.surface = [=](double t) { return sphere(radius(t)); };
+  exact.trajectories = [=](const Field& x0, double t) -> Field { return x0 * (radius(t) / radius(0)); };
+  exact.fields = [=](double t, const SurfacePoints& at, FieldsAtPoints& out) {
+    const double R = radius(t), speed = outward_speed(R);
+    set_position_and_normal(at, 0, 6, out);
+    for (int i = 0; i < 3; ++i) {  // v = speed nu, constant on the sphere
+      out.value[3 + i] = speed * at.normal[i];
+      for (int j = 0; j < 3; ++j) out.gradient[3 + i][j] = speed * at.weingarten[i][j];
+    }
+    out.value[9] = pack(scalar_of(R));
+    out.gradient[9] = {};
+  };
+  return exact;
+}
+
 ExactEvolution shrinking_sphere(double initial_radius) {
   const auto radius = [initial_radius](double t) {
     const double squared = initial_radius * initial_radius - 4 * t;
@@ -71,23 +91,9 @@ ExactEvolution shrinking_sphere(double initial_radius) {
     }
     return std::sqrt(squared);
   };
-  ExactEvolution exact;
-  exact.quantities = {{"x", 3}, {"v", 3}, {"nu", 3}, {"H", 1}};
-  exact.surface = [radius](double t) { return sphere(radius(t)); };
-  exact.trajectories = [radius, initial_radius](const Field& x0, double t) -> Field {
-    return x0 * (radius(t) / initial_radius);
-  };
-  exact.fields = [radius](double t, const SurfacePoints& at, FieldsAtPoints& out) {
-    const double H = 2 / radius(t);
-    set_position_and_normal(at, 0, 6, out);
-    for (int i = 0; i < 3; ++i) {  // v = -H nu, H constant on the sphere
-      out.value[3 + i] = -H * at.normal[i];
-      for (int j = 0; j < 3; ++j) out.gradient[3 + i][j] = -H * at.weingarten[i][j];
-    }
-    out.value[9] = pack(H);
-    out.gradient[9] = {};
-  };
-  return exact;
+  const auto H = [](double R) { return 2 / R; };
+  return round_sphere(
+      radius, [](double R) { return -2 / R; }, "H", H);
 }
 
 namespace {

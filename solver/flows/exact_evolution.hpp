@@ -42,6 +42,12 @@ struct ExactEvolution {
   Field nodal_values(const Field& x, double t) const;
 };
 
+/// A sphere of radius R(t) whose points move along its normals with the speed R'(t) = outward_speed(R).
+/// Quantities x, v, nu and a scalar that is constant on the sphere.
+ExactEvolution round_sphere(const std::function<double(double t)>& radius,
+                            const std::function<double(double R)>& outward_speed, const std::string& scalar,
+                            const std::function<double(double R)>& scalar_of);
+
 /// kll19 §13.1: a sphere of radius R_0 under mean curvature flow, R(t) = sqrt(R_0² - 4t) for t < R_0²/4.
 /// Quantities x, v = -H nu, nu, H.
 ExactEvolution shrinking_sphere(double initial_radius);

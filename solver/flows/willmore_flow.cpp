@@ -2,10 +2,10 @@
 #include "solver/flows/willmore_flow.hpp"
 
 #include "solver/error.hpp"
+#include "solver/flows/l2_project.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_terms.hpp"
 #include "solver/linalg/gmres.hpp"
-#include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
 
@@ -168,10 +168,7 @@ WillmoreStart start_from(const SurfaceSpace& space, const Field& x, Field u, Fie
     start.theta = M * exact_w + rest;
     start.state.w = std::move(exact_w);
   } else {
-    SpdSolver spd(space.pattern());
-    spd.factorise(1.0, M, 0.0, A);
-    start.state.w = -rest;
-    spd.solve(start.state.w);
+    start.state.w = l2_project(M, -rest);
   }
   start.state.x = x;
   start.state.v = interpolated_velocity(u, start.state.w);
