@@ -60,6 +60,7 @@ std::vector<Entry> mean_curvature_entries();
 std::vector<Entry> dziuk_entries();
 std::vector<Entry> bgn_entries();
 std::vector<Entry> willmore_entries();
+std::vector<Entry> willmore_competitor_entries();
 std::vector<Entry> coupled_diffusion_entries();
 std::vector<Entry> cahn_hilliard_entries();
 

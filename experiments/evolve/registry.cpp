@@ -10,8 +10,9 @@ namespace esfem {
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = [] {
     std::vector<Entry> list;
-    for (const auto& of_file : {mean_curvature_entries, dziuk_entries, bgn_entries, willmore_entries,
-                                coupled_diffusion_entries, cahn_hilliard_entries})
+    for (const auto& of_file :
+         {mean_curvature_entries, dziuk_entries, bgn_entries, willmore_entries, willmore_competitor_entries,
+          coupled_diffusion_entries, cahn_hilliard_entries})
       for (Entry& entry : of_file()) list.push_back(std::move(entry));
     return list;
   }();

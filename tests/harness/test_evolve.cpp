@@ -239,7 +239,7 @@ TEST_F(Evolve, SnapshotsAreThoseOfTheLastRunAndSayWhichItWas) {
 
 TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
   const std::vector<std::pair<json, std::string>> bad = {
-      {{{"flow", "mean"}}, "expected one of bgn, cahn_hilliard, coupled_diffusion, dziuk, mean_curvature"},
+      {{{"flow", "mean"}}, "expected one of bgn, bgn_willmore, cahn_hilliard, coupled_diffusion"},
       {{{"flow", "bgn"}, {"bdf", 2}}, "bdf = 2; expected 1 to 1"},
       {{{"flow", "dziuk"}, {"variant", {{"normalise", true}}}}, "no variants"},
       {{{"problem", "growing_sphere"}}, "expected no key problem"},

@@ -42,9 +42,9 @@ TEST(Registry, EachFlowAndProblemIsThereOnceAndSaysWhatItIs) {
 }
 
 TEST(Registry, ANameThatNoEntryHasReachesNoRun) {
-  EXPECT_THAT(
-      refusal({{"flow", "mean_curvatur"}}),
-      AllOf(HasSubstr("found flow = \"mean_curvatur\""), HasSubstr("bgn, cahn_hilliard, coupled_diffusion")));
+  EXPECT_THAT(refusal({{"flow", "mean_curvatur"}}),
+              AllOf(HasSubstr("found flow = \"mean_curvatur\""),
+                    HasSubstr("expected one of bgn, bgn_willmore, cahn_hilliard")));
   EXPECT_THAT(refusal({{"flow", ""}}), HasSubstr("expected one of"));
   EXPECT_THAT(refusal({{"flow", "coupled_diffusion"}, {"problem", "growing"}}),
               HasSubstr("expected one of growing_sphere, tumour_growth"));
