@@ -59,6 +59,7 @@ const Entry& entry_named(const std::string& flow, const std::string& problem, co
 std::vector<Entry> mean_curvature_entries();
 std::vector<Entry> dziuk_entries();
 std::vector<Entry> bgn_entries();
+std::vector<Entry> generalised_mean_curvature_entries();
 std::vector<Entry> willmore_entries();
 std::vector<Entry> willmore_competitor_entries();
 std::vector<Entry> coupled_diffusion_entries();

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/advice.hpp"
+#include "experiments/evolve/run_flow.hpp"
+#include "experiments/evolve/start.hpp"
+#include "solver/flows/power_law_sphere.hpp"
+
+namespace esfem {
+namespace {
+
+void run_generalised_mean_curvature(const Run& run) {
+  using State = GeneralisedMeanCurvatureFlow::State;
+  using Variant = MeanCurvatureFlow::Variant;
+  const EvolveConfig& config = run.config;
+  const Field& x0 = config.mesh.nodes;
+  const PowerLaw law(config.parameters.number("power"));
+  const bool is_sphere = config.surface && config.surface->name == "sphere";
+  ExactEvolution exact;
+  std::function<State(double)> exact_state;
+  if (is_sphere) {
+    exact = power_law_sphere(config.surface->parameters.at("radius"), law);
+    exact_state = [&](double t) { return exact_generalised_mean_curvature_state(exact, x0, t); };
+  }
+  MeanCurvatureFlow::State curvature = config.surface ? mean_curvature_state_on(*config.surface, x0)
+                                                      : discrete_mean_curvature_state(run.space, x0);
+  if (const Field nu_H = start_values(config, {"nu", "H"}); nu_H.size() > 0) curvature.u = nu_H;
+  const State initial =
+      generalised_mean_curvature_state(law, x0, curvature.u.leftCols(3), curvature.u.col(3));
+  const auto velocity = config.variant.is("velocity", "ritz") ? Variant::ritz : Variant::interpolation;
+  run_flow(GeneralisedMeanCurvatureFlow(run.space, law, velocity, limits_of(run)), run, initial, exact_state);
+}
+
+}  // namespace
+
+std::vector<Entry> generalised_mean_curvature_entries() {
+  Entry entry;
+  entry.flow = "generalised_mean_curvature";
+  entry.help =
+      "Binz, Kovács 2022: v = -V(H) nu, V = H^power, or -H^power for negative powers (-1: inverse mean "
+      "curvature flow), H > 0";
+  entry.fields = "nu, V";
+  entry.variant = {
+      word("velocity", {"ritz", "interpolation"}, "v_h: Ritz projection of -V_h nu_h, or its nodal values")};
+  entry.parameters = {{Key::number, "power", 2, "of H, not 0"}};
+  entry.run = run_generalised_mean_curvature;
+  entry.check = [](const EvolveConfig& config, const std::string&) {
+    PowerLaw(config.parameters.number("power"));
+  };
+  entry.starts = {{"nu", "H"}};
+  entry.can_shrink_to_nothing = true;
+  entry.cure = smaller_steps_or_even_elements;
+  return {entry};
+}
+
+}  // namespace esfem
