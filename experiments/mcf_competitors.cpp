@@ -4,13 +4,13 @@
 // of Barrett, Garcke and Nürnberg
 //
 // Sample runs:  build/bin/mcf_competitors --preset check --output competitors.json
-//               build/bin/mcf_competitors --surfaces sphere --schemes kll19,bgn --levels 0 --steps 0-2
+//               build/bin/mcf_competitors --surface sphere --flow mean_curvature,bgn --levels 0 --steps 0-2
 //
 // Writes:       results/paper/mcf_competitors.{json,csv,tex}, from which plots/mcf_competitors.py draws
 //               figures/gallery/mcf_competitors
 //
 // The sphere of radius 2 on [0, 0.6] and the self-shrinking torus on [0, 0.2], whose solutions are known. All
-// schemes run on the same meshes with quadratic elements, kll19 and Dziuk's with BDF 1 to 3 and exact
+// schemes run on the same meshes with quadratic elements, (5.1) and Dziuk's with BDF 1 to 3 and exact
 // starting values, BGN's, which is of first order, also with linear elements and lumped masses, as published.
 // Seconds are those of the processor in the steps alone; errors are recorded at about 12 times in between.
 // The nodes of BGN's scheme slide along the surface, which counts as an error of x; `distance` is that of the
@@ -21,19 +21,13 @@
 // Its nodes keep as near to the surface, on the sphere even nearer; but where the mesh is not that of a
 // sphere they slide, and its normals and curvatures, those of the discrete surface, are 10 to 100 times less
 // accurate.
-#include <algorithm>
 #include <cmath>
 
 #include "experiments/harness/distance.hpp"
-#include "experiments/harness/experiment.hpp"
-#include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
+#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/mean_curvature_flows.hpp"
 #include "experiments/harness/timed.hpp"
 #include "solver/analysis/errors.hpp"
-#include "solver/error.hpp"
-#include "solver/flows/bgn_flow.hpp"
-#include "solver/flows/dziuk_flow.hpp"
-#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/profile_grid.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
@@ -47,87 +41,49 @@ const int recorded_steps = 12;
 /// A surface to start from, its solution, meshes and step sizes. Each level of the mesh has twice as many
 /// triangles as the one before.
 struct Case {
-  std::string name;
-  Surface surface;
   ExactEvolution exact;
   HalvedSteps time_steps;
   double largest_h, vertices;  ///< of level 0
 };
 
-std::vector<Case> known_cases() {
-  return {{"sphere", sphere(2), shrinking_sphere(2), {0.6, 0.05}, 0.5, 440},
-          {"angenent_torus", angenent_torus(), shrinking_angenent_torus(), {0.2, 0.02}, 0.66, 715}};
+const Case& case_of(const Choice& choice) {
+  static const std::map<std::string, Case> cases = {
+      {"sphere", {shrinking_sphere(2), {0.6, 0.05}, 0.5, 440}},
+      {"angenent_torus", {shrinking_angenent_torus(), {0.2, 0.02}, 0.66, 715}}};
+  return cases.at(choice["surface"]);
 }
 
-const std::vector<std::string> known_surfaces = {"sphere", "angenent_torus"};
-const std::vector<std::string> known_schemes = {"kll19", "dziuk", "bgn"};
-
-/// One run; k is the exponent of the step size.
-struct Run {
-  std::string surface, scheme;
-  int degree, bdf, level, k;
-};
-
-struct OwnOptions {
-  std::vector<std::string> surfaces = known_surfaces, schemes = known_schemes;
-};
-
-/// The cases of one scheme.
-void add_runs(const std::string& scheme, int degree, int bdf, const std::vector<std::string>& surfaces,
-              const std::vector<int>& levels, const std::vector<int>& steps, std::vector<Run>& runs) {
-  for (const std::string& surface : surfaces)
-    for (const int level : levels)
-      for (const int k : steps) runs.push_back({surface, scheme, degree, bdf, level, k});
+Block otherwise(bool) {
+  return {{"surface", {"sphere", "angenent_torus"}},
+          {"flow", {"mean_curvature", "dziuk", "bgn"}},
+          {"degree", 2},
+          {"bdf", 2},
+          {"level", 0},
+          {"step", range(0, 2)}};
 }
 
-std::vector<Run> preset_runs(const std::string& preset) {
-  std::vector<Run> runs;
-  const auto add = [&](const char* scheme, int degree, int bdf, const std::vector<int>& levels,
-                       const std::vector<int>& steps) {
-    add_runs(scheme, degree, bdf, known_surfaces, levels, steps, runs);
-  };
-  const bool paper = preset == "paper";
+std::vector<Block> preset(bool paper) {
   const std::vector<int> some = paper ? range(0, 2) : range(1, 1), many = paper ? range(0, 3) : some;
   const std::vector<int> two = paper ? range(0, 1) : range(0, 0), three = paper ? range(0, 2) : two;
-  add("kll19", 2, 3, three, many);
-  add("dziuk", 2, 3, three, many);
-  add("dziuk", 2, 2, two, some);
-  add("bgn", 2, 1, {0}, many);
-  add("bgn", 1, 1, two, many);
-  if (paper) {
-    add("kll19", 2, 1, {0}, many);
-    add("dziuk", 2, 1, {0}, many);
-  }
-  return runs;
-}
-
-std::vector<Run> resolve(const Options& options, const OwnOptions& own) {
-  if (!options.meshes.empty() || options.start)
-    throw InputError(
-        "--mesh, --start: all schemes run on generated meshes from exact starting values; expected "
-        "--surfaces, "
-        "--schemes, --degree, --bdf, --levels, --steps");
-  const bool as_in_the_preset = !options.levels && !options.steps && !options.bdf && !options.degree &&
-                                own.surfaces == known_surfaces && own.schemes == known_schemes;
-  if (as_in_the_preset) return preset_runs(options.preset);
-  std::vector<Run> runs;
-  for (const std::string& scheme : own.schemes)
-    add_runs(scheme, options.degree.value_or(2), scheme == "bgn" ? 1 : options.bdf.value_or(2), own.surfaces,
-             options.levels.value_or(range(0, 0)), options.steps.value_or(range(0, 2)), runs);
-  return runs;
+  std::vector<Block> blocks = {{{"flow", "mean_curvature"}, {"bdf", 3}, {"level", three}, {"step", many}},
+                               {{"flow", "dziuk"}, {"bdf", 3}, {"level", three}, {"step", many}},
+                               {{"flow", "dziuk"}, {"bdf", 2}, {"level", two}, {"step", some}},
+                               {{"flow", "bgn"}, {"bdf", 1}, {"step", many}},
+                               {{"flow", "bgn"}, {"bdf", 1}, {"degree", 1}, {"level", two}, {"step", many}}};
+  if (paper) blocks.push_back({{"flow", {"mean_curvature", "dziuk"}}, {"bdf", 1}, {"step", many}});
+  return blocks;
 }
 
 /// Runs the flow from exact_state(0), and fills in errors, distance and seconds.
 template <class Flow, class ExactState>
-void run_flow(Flow&& flow, int bdf, const ExactState& exact_state, const SurfaceSpace& space, const Field& x0,
-              const ExactEvolution& exact, Row& row) {
-  using State = typename std::decay_t<Flow>::State;
-  Timed<std::decay_t<Flow>> timed{flow};
+void measure(const SurfaceSpace& space, const ExactEvolution& exact, const Field& x0, Flow& flow,
+             const ExactState& exact_state, int bdf, Row& row) {
+  Timed<Flow> timed{flow};
   ErrorRecorder errors(space, exact, x0);
   const int every = std::max(1, row.steps / recorded_steps);
   double farthest = 0;
-  integrate(timed, UniformSteps{bdf, row.tau, row.steps, Start{}},
-            {exact_state(0.0), std::function<State(double)>(exact_state)}, [&](int n, const State& state) {
+  integrate(timed, UniformSteps{bdf, row.tau, row.steps}, {exact_state(0.0), exact_state},
+            [&](int n, const auto& state) {
               if (n % every != 0 && n != row.steps) return;
               errors.record(state);
               farthest = std::max(farthest, distance(exact.surface(state.t), state.x));
@@ -138,93 +94,65 @@ void run_flow(Flow&& flow, int bdf, const ExactState& exact_state, const Surface
                 {"seconds_per_step", timed.seconds / (row.steps - bdf + 1)}};
 }
 
-Row run_cell(const Run& run, const Case& start, Row row) {
+void run(const Choice& choice, Row& row, const std::string&) {
   // 1. The initial surface and the finite element space on it; that of BGN for P1 is lumped.
-  const double h = edge_length(start.largest_h, run.level);
+  const ExactEvolution& exact = case_of(choice).exact;
+  const Surface surface = exact.surface(0);
+  const double h = edge_length(case_of(choice).largest_h, choice.level());
   const auto generate = [&] {
-    return run.surface == "sphere" ? generate_mesh(start.surface, h)
-                                   : generate_mesh(start.surface, angenent_torus_edge_length(h));
+    return choice["surface"] == "sphere" ? generate_mesh(surface, h)
+                                         : generate_mesh(surface, angenent_torus_edge_length(h));
   };
-  const Mesh mesh = initial_mesh({}, 0, generate, start.surface, run.degree);
-  const bool lumped = run.scheme == "bgn" && run.degree == 1;
-  const SurfaceSpace space(mesh, lumped ? vertex_quadrature() : default_quadrature(run.degree));
+  const Mesh mesh = initial_mesh(choice, generate, surface);
+  const bool lumped = choice["flow"] == "bgn" && choice.degree() == 1;
+  const SurfaceSpace space(mesh, lumped ? vertex_quadrature() : choice.quadrature());
   describe_mesh(mesh, row);
 
-  // 2. The time steps, some with their errors.
-  const ExactEvolution& exact = start.exact;
-  const auto go = [&](auto&& flow, const auto& exact_state) {
-    run_flow(flow, run.bdf, exact_state, space, mesh.nodes, exact, row);
-  };
-  if (run.scheme == "kll19")
-    go(MeanCurvatureFlow(space, {}),
-       [&](double t) { return exact_mean_curvature_state(exact, mesh.nodes, t); });
-  else if (run.scheme == "dziuk")
-    go(DziukFlow(space), [&](double t) { return exact_dziuk_state(exact, mesh.nodes, t); });
-  else
-    go(BgnFlow(space), [&](double) { return bgn_state_on(space, mesh.nodes); });
-  return row;
+  // 2. The time steps, some with their errors. BGN's scheme has order 1.
+  const int bdf = choice["flow"] == "bgn" ? 1 : choice.bdf();
+  with_mean_curvature_flow(choice["flow"], space, exact, mesh.nodes, [&](auto flow, const auto& exact_state) {
+    measure(space, exact, mesh.nodes, flow, exact_state, bdf, row);
+  });
 }
 
-std::string cell_name(const Run& run) {
-  return format("%s_%s_p%d_bdf%d_h%d_tau%d", run.surface.c_str(), run.scheme.c_str(), run.degree, run.bdf,
-                run.level, run.k);
-}
-
-/// Seconds on one core: BGN's scheme has a system for four unknowns a node.
-double estimated_cost(const Run& run, const Case& start) {
-  const double nodes = start.vertices * run.degree * run.degree * std::pow(2, run.level),
-               steps = start.time_steps.count(run.k);
-  return nodes * (2e-4 + steps * (run.scheme == "bgn" ? 30e-6 * run.degree : 4e-6) +
+/// BGN's scheme has a system for four unknowns a node.
+double cost(const Choice& choice) {
+  const Case& start = case_of(choice);
+  const double nodes = start.vertices * choice.degree() * choice.degree() * std::pow(2, choice.level());
+  const double steps = start.time_steps.count(choice.step());
+  return nodes * (2e-4 + steps * (choice["flow"] == "bgn" ? 30e-6 * choice.degree() : 4e-6) +
                   std::min<double>(steps, recorded_steps) * 8e-6);
-}
-
-std::vector<Cell> cells(const std::vector<Run>& runs) {
-  const std::vector<Case> cases = known_cases();
-  std::vector<Cell> list;
-  for (const Run& run : runs) {
-    const Case& start =
-        *std::find_if(cases.begin(), cases.end(), [&](const Case& one) { return one.name == run.surface; });
-    list.push_back(
-        {cell_name(run), estimated_cost(run, start),
-         [=](const Row& row, const std::string&) { return run_cell(run, start, row); },
-         planned_row(
-             run.level, start.time_steps, run.k,
-             {{"surface", run.surface}, {"scheme", run.scheme}, {"degree", run.degree}, {"bdf", run.bdf}})});
-  }
-  return list;
-}
-
-nlohmann::json parameters(const std::string& preset) {
-  return {{"preset", preset},
-          {"start", "exact"},
-          {"end_time", {{"sphere", 0.6}, {"angenent_torus", 0.2}}},
-          {"largest_tau", {{"sphere", 0.05}, {"angenent_torus", 0.02}}},
-          {"meshes", "generated, edge lengths 0.5 (sphere), 0.33 to 0.66 (torus) times 2^(-level/2)"}};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  OwnOptions own;
-  Experiment experiment;
+  GridExperiment experiment;
   experiment.stem = "mcf_competitors";
   experiment.paper = "esfem";
   experiment.help =
       "Mean curvature flow of the sphere of radius 2 on [0, 0.6] and the self-shrinking torus on [0, 0.2] by "
       "three "
-      "schemes:\n"
-      "errors, distance of the nodes from the exact surface, and seconds of the steps. Step sizes 0.05 2^-k "
-      "and "
-      "0.02 2^-k;\n"
-      "level j of the meshes has 2^j times as many triangles as level 0. No units.\n"
-      "Without --surfaces, --schemes, --degree, --bdf, --levels, --steps: the runs of the preset.\n\n"
-      "Example: mcf_competitors --surfaces sphere --schemes kll19,bgn --steps 0-3 --output table.json";
-  experiment.add_options = [&](CommandLine& line) {
-    line.names("--surfaces", known_surfaces, own.surfaces, "surfaces to start from");
-    line.names("--schemes", known_schemes, own.schemes,
-               "kll19: (5.1) | dziuk: kll19 (3.6) | bgn: Barrett, Garcke, Nürnberg 2008, with BDF1 only");
-  };
-  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
-  experiment.parameters = [&](const Options& options) { return parameters(options.preset); };
+      "schemes:\nerrors, distance of the nodes from the exact surface, and seconds of the steps. Step sizes "
+      "0.05 "
+      "2^-k and 0.02 2^-k;\nlevel j of the meshes has 2^j times as many triangles as level 0. No units.\n\n"
+      "Example: mcf_competitors --surface sphere --flow mean_curvature,bgn --steps 0-3 --output table.json";
+  experiment.grid.axes = {
+      {"surface", {"sphere", "angenent_torus"}, "surfaces to start from"},
+      {"flow",
+       {"mean_curvature", "dziuk", "bgn"},
+       "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6) | bgn: Barrett, Garcke, Nürnberg 2008, of order 1"}};
+  experiment.grid.labels = {"surface", "flow", "degree", "bdf"};
+  experiment.grid.otherwise = otherwise;
+  experiment.grid.preset = preset;
+  const std::string why = "all schemes run on generated meshes from exact starting values";
+  experiment.grid.refused = {{"mesh", why}, {"start", why}};
+  experiment.steps = [](const Choice& choice) { return case_of(choice).time_steps; };
+  experiment.cost = cost;
+  experiment.run = run;
+  experiment.parameters = {{"start", "exact"},
+                           {"end_time", {{"sphere", 0.6}, {"angenent_torus", 0.2}}},
+                           {"largest_tau", {{"sphere", 0.05}, {"angenent_torus", 0.02}}}};
+  experiment.meshes = "generated, edge lengths 0.5 (sphere), 0.33 to 0.66 (torus) times 2^(-level/2)";
   return run_experiment(experiment, argc, argv);
 }

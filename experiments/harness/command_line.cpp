@@ -124,6 +124,10 @@ void CommandLine::positive(const std::string& name, std::optional<double>& value
   parser_->add(name, value, help)->check(positive_number());
 }
 
+void CommandLine::positive(const std::string& name, std::vector<double>& values, const std::string& help) {
+  parser_->add(name, values, help)->check(positive_number())->delimiter(',')->type_name("LIST");
+}
+
 void CommandLine::parsed(const std::string& name, const std::function<void(const std::string&)>& parse,
                          const std::string& help, const std::string& type) {
   parser_->app.add_option_function<std::string>(name, parse, help)->type_name(type)->group(parser_->group);

@@ -46,6 +46,8 @@ class CommandLine {
   void number(const std::string& name, double& value, const std::string& help);
   void positive(const std::string& name, double& value, const std::string& help);
   void positive(const std::string& name, std::optional<double>& value, const std::string& help);
+  /// A list of positive numbers, such as --gamma 10,20.
+  void positive(const std::string& name, std::vector<double>& values, const std::string& help);
   /// What `parse` makes of the text; it throws InputError when it cannot.
   void parsed(const std::string& name, const std::function<void(const std::string&)>& parse,
               const std::string& help, const std::string& type);

@@ -11,12 +11,6 @@
 
 namespace esfem {
 
-std::vector<int> range(int first, int last) {
-  std::vector<int> list;
-  for (int i = first; i <= last; ++i) list.push_back(i);
-  return list;
-}
-
 double HalvedSteps::tau(int k) const {
   return largest * std::pow(2.0, -k);
 }
@@ -50,6 +44,10 @@ Mesh initial_mesh(const std::vector<std::string>& files, int level, const std::f
   Mesh mesh = lagrange_mesh(files.empty() ? generate() : mesh_from_file(files.at(level)), degree);
   project_nodes(mesh, surface);
   return mesh;
+}
+
+Mesh initial_mesh(const Choice& choice, const std::function<Mesh()>& generate, const Surface& surface) {
+  return initial_mesh(choice.meshes(), choice.level(), generate, surface, choice.degree());
 }
 
 nlohmann::json mesh_parameter(const std::vector<std::string>& files, const std::string& generated) {

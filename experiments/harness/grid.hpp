@@ -9,14 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "experiments/harness/choice.hpp"
 #include "experiments/harness/experiment.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace esfem {
-
-/// first, first + 1, .., last; empty when last < first.
-std::vector<int> range(int first, int last);
 
 /// The step sizes tau = largest 2^-k on [0, end_time].
 struct HalvedSteps {
@@ -44,6 +43,9 @@ void require_levels(const std::vector<int>& levels, int count, const std::string
 /// error.
 Mesh initial_mesh(const std::vector<std::string>& files, int level, const std::function<Mesh()>& generate,
                   const Surface& surface, int degree);
+
+/// The same for a run: its files, level and degree.
+Mesh initial_mesh(const Choice& choice, const std::function<Mesh()>& generate, const Surface& surface);
 
 /// What the parameters of a table say of the meshes: the files, or `generated` when there are none.
 nlohmann::json mesh_parameter(const std::vector<std::string>& files, const std::string& generated);
@@ -73,7 +75,29 @@ double checkpoint_seconds();
 /// None without folder.
 std::optional<Checkpoint> checkpoint_in(const std::string& folder, const std::string& cell);
 
+/// Integrates a flow, with a checkpoint in the folder of the run, to its end or its singularity: observers as
+/// for integrate, of which one records. Fills in status, steps, seconds, series and snapshots; of adaptive
+/// steps also the value "rejected_steps".
+template <class Flow, class Steps, class... Observers>
+void run_recorded(Flow& flow, const Steps& steps, const StartingValues<typename Flow::State>& start,
+                  const std::string& folder, RunRecorder& recorder, Row& row, Observers&&... observers);
+
 /// Fills in the series, and the list "snapshots" of {"t", "file"} when there are some.
 void describe_run(RunRecorder& recorder, Row& row);
+
+template <class Flow, class Steps, class... Observers>
+void run_recorded(Flow& flow, const Steps& steps, const StartingValues<typename Flow::State>& start,
+                  const std::string& folder, RunRecorder& recorder, Row& row, Observers&&... observers) {
+  std::optional<Checkpoint> checkpoint = checkpoint_in(folder, row.cell);
+  if (checkpoint) attach(*checkpoint, recorder);
+  const auto to_the_end = [&] {
+    const StepCount done = integrate(flow, steps, start, checkpoint ? &*checkpoint : nullptr, observers...);
+    row.steps = done.steps;
+    if (std::is_same_v<Steps, AdaptiveSteps>) row.values["rejected_steps"] = done.rejected;
+  };
+  row.status = run_to_end(to_the_end, recorder);
+  if (checkpoint) row.seconds = checkpoint->seconds_before();
+  describe_run(recorder, row);
+}
 
 }  // namespace esfem

@@ -46,6 +46,11 @@ class RunRecorder {
   /// kappa_energy, 1/2 int |kappa|² of the discrete surface, which a flow's own H can drift away from.
   /// Snapshots have kappa of the discrete surface, too, and its nu and H where the flow has none.
   void record(int n, double t, const Field& x, NodalFields fields);
+  /// The same with all nodal fields of a state.
+  template <class State>
+  void record(int n, const State& state) {
+    record(n, state.t, state.x, nodal_fields(state));
+  }
 
   /// What a flow's own nu and H say of the newest surface, and what the surface says of itself.
   struct CurvatureComparison {
