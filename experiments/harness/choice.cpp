@@ -28,16 +28,18 @@ Block merged(Block first, const Block& second) {
 }
 
 void require_taken(const Grid& grid, const GridRequest& request) {
-  const auto refuse = [&](const std::string& option, const std::string& axis) {
+  const auto refuse = [&](const std::string& axis) {
     const auto found = grid.refused.find(axis);
-    if (found != grid.refused.end()) throw InputError(option + ": " + found->second);
+    const char* plural = axis == "level" || axis == "step" ? "s" : "";
+    if (found != grid.refused.end()) throw InputError("--" + axis + plural + ": " + found->second);
   };
-  for (const auto& [axis, values] : request.given) refuse("--" + axis, axis);
-  if (!request.meshes.empty()) refuse("--mesh", "mesh");
+  for (const auto& [axis, values] : request.given) refuse(axis);
+  if (!request.meshes.empty()) refuse("mesh");
 }
 
 std::string part_of_name(const std::string& axis, const nlohmann::json& value) {
   if (value.is_number()) return (axis == "degree" ? "p" : axis) + format("%g", value.get<double>());
+  if (value == "yes" || value == "no") return value == "yes" ? axis : "";
   std::string name = value.get<std::string>();
   const auto is_bad = [](unsigned char c) { return !std::isalnum(c) && c != '_' && c != '.' && c != '-'; };
   name.erase(std::remove_if(name.begin(), name.end(), is_bad), name.end());
@@ -72,7 +74,9 @@ Quadrature Choice::quadrature() const {
 
 std::vector<Choice> choices(const Grid& grid, const GridRequest& request) {
   require_taken(grid, request);
-  const Block otherwise = grid.otherwise(request.paper);
+  Block otherwise = grid.otherwise(request.paper);
+  for (const Axis& axis : grid.axes)
+    if (!axis.known.empty()) otherwise.emplace(axis.name, axis.known);
   Block given = request.given;
   const int files = static_cast<int>(request.meshes.size());
   if (files > 0) given.emplace("level", range(0, files - 1));
@@ -99,7 +103,7 @@ std::vector<Choice> choices(const Grid& grid, const GridRequest& request) {
 
 std::string cell_name(const Grid& grid, const Choice& choice) {
   std::string name;
-  const auto add = [&](const std::string& part) { name += (name.empty() ? "" : "_") + part; };
+  const auto add = [&](const std::string& part) { name += (name.empty() || part.empty() ? "" : "_") + part; };
   for (const std::string& axis : grid.labels) add(part_of_name(axis, choice.value(axis)));
   if (choice.has("level")) add(format("h%d", choice.level()));
   if (choice.has("step")) add(format("tau%d", choice.step()));

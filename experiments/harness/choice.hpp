@@ -37,6 +37,14 @@ class Values {
 /// All combinations of some values of each axis.
 using Block = std::map<std::string, Values>;
 
+/// The keys of a map, such as the names of an experiment's surfaces.
+template <class Value>
+std::vector<std::string> names_of(const std::map<std::string, Value>& map) {
+  std::vector<std::string> names;
+  for (const auto& entry : map) names.push_back(entry.first);
+  return names;
+}
+
 /// An axis that an experiment has beside those of all: "degree", "bdf", "start", "level" (of the mesh) and
 /// "step" (k of tau = tau_0 2^-k). It is the option --NAME.
 struct Axis {
@@ -81,7 +89,8 @@ struct Grid {
   std::vector<std::string> labels = {};  ///< axes that tell rows apart beside mesh and step size
   /// The runs of preset paper and check. What a block does not say is as in `otherwise`.
   std::function<std::vector<Block>(bool paper)> preset;
-  /// As soon as one axis is given on the command line, all combinations of the given values and these.
+  /// As soon as one axis is given on the command line, all combinations of the given values and these. It
+  /// need not say anything of an axis with known names: then all of them.
   std::function<Block(bool paper)> otherwise;
   /// Options of all experiments that this one does not take, "mesh", "start", .., and why.
   std::map<std::string, std::string> refused = {};
@@ -99,7 +108,8 @@ struct GridRequest {
 /// mesh files and a level has none.
 std::vector<Choice> choices(const Grid& grid, const GridRequest& request);
 
-/// The name of a run: its labels, "h" and the level, "tau" and the step, where it has these.
+/// The name of a run: its labels, "h" and the level, "tau" and the step, where it has these. Of an axis with
+/// "yes" and "no" it has the name of the axis or nothing.
 std::string cell_name(const Grid& grid, const Choice& choice);
 
 /// {"flow": "dziuk", "bdf": 2, ..}
