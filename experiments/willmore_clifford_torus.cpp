@@ -4,8 +4,8 @@
 // discretisations are (kll21 §7.1, Figure 7.4)
 //
 // Sample runs:  build/bin/willmore_clifford_torus --preset check --output torus.json
-//               build/bin/willmore_clifford_torus --torus-mesh graded --levels 0,1 --steps 2
-//               build/bin/willmore_clifford_torus --runs stability --F implicit --levels 2 --steps 0-4
+//               build/bin/willmore_clifford_torus --triangulation graded --levels 0,1 --steps 2
+//               build/bin/willmore_clifford_torus --run stability --F implicit --levels 2 --steps 0-4
 //               build/bin/willmore_clifford_torus --theta yes --bdf 2 --levels 0-2 --steps 3
 //
 // Writes:       results/paper/willmore_clifford_torus.{json,csv,tex}, from which
@@ -24,12 +24,9 @@
 // when tau is as small as 0.003 BDF1, too, lets errors grow on unstructured meshes, like exp(10t).
 #include <cmath>
 
-#include "experiments/harness/experiment.hpp"
-#include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
+#include "experiments/harness/grid_experiment.hpp"
 #include "experiments/harness/stationary_willmore.hpp"
 #include "solver/constants.hpp"
-#include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
 
 namespace {
@@ -47,184 +44,78 @@ const double largest_h = 0.7;
 /// The same for about 1,936 nodes, and twice as many with each level.
 const double accuracy_grid_size = 22, accuracy_h = 0.48;
 
-const std::vector<std::string> known_runs = {"convergence", "stability", "accuracy"};
-const std::vector<std::string> known_meshes = {"isothermal", "graded"};
-const std::vector<std::string> known_F = {"extrapolated", "implicit"};
-const std::vector<std::string> known_theta = {"no", "yes"};
-
-/// One run of the grid.
-struct Run {
-  std::string kind, mesh, F, theta;
-  int bdf = 1, level = 0, k = 0;
-};
-
-struct OwnOptions {
-  std::string quadrature;
-  std::vector<std::string> runs, meshes, F, theta;
-};
-
-struct Setting {
-  std::vector<Run> runs;
-  int degree;
-  Start start;
-  std::vector<std::string> meshes;
-  Quadrature rule;
-};
-
-/// Adds a method on all levels with all step sizes.
-void add_runs(Run run, const std::vector<int>& levels, const std::vector<int>& steps,
-              std::vector<Run>& runs) {
-  for (int level : levels) {
-    for (int k : steps) {
-      run.level = level;
-      run.k = k;
-      runs.push_back(run);
-    }
-  }
+Block otherwise(bool) {
+  return {{"run", "convergence"}, {"triangulation", "isothermal"},
+          {"F", "extrapolated"},  {"theta", "no"},
+          {"degree", 2},          {"bdf", 1},
+          {"start", "exact"},     {"level", 0},
+          {"step", range(2, 3)}};
 }
 
-std::vector<Run> preset_runs(const std::string& preset) {
-  const bool paper = preset == "paper";
-  const std::vector<int> grids = range(0, 5);
-  std::vector<Run> runs;
-  add_runs({"convergence", "isothermal", "extrapolated", "no", 1}, paper ? grids : range(0, 3),
-           paper ? range(0, 6) : range(1, 2), runs);
-  if (!paper) add_runs({"convergence", "isothermal", "extrapolated", "no", 1}, grids, {3}, runs);
-  add_runs({"convergence", "graded", "extrapolated", "no", 1}, range(0, paper ? 3 : 1),
-           paper ? range(1, 4) : range(1, 3), runs);
-  if (paper) add_runs({"convergence", "graded", "extrapolated", "no", 1}, range(0, 2), {5, 6}, runs);
-  add_runs({"convergence", "isothermal", "extrapolated", "yes", 1}, range(1, paper ? 5 : 3), {3}, runs);
-  add_runs({"convergence", "isothermal", "extrapolated", "no", 2}, range(1, paper ? 5 : 3), {3}, runs);
-  for (int bdf : {1, 2}) {
-    for (const char* F : {"extrapolated", "implicit"}) {
-      add_runs({"stability", "isothermal", F, "no", bdf}, {2}, paper ? range(0, 5) : range(1, 3), runs);
-    }
-  }
-  for (const char* mesh : {"isothermal", "graded"}) {
-    add_runs({"accuracy", mesh, "extrapolated", "no", 1}, {0}, {4}, runs);
-  }
-  return runs;
+std::vector<Block> preset(bool paper) {
+  std::vector<Block> blocks = {
+      {{"level", range(0, paper ? 5 : 3)}, {"step", paper ? range(0, 6) : range(1, 2)}},
+      {{"triangulation", "graded"}, {"level", range(0, paper ? 3 : 1)}, {"step", range(1, paper ? 4 : 3)}},
+      {{"theta", "yes"}, {"level", range(1, paper ? 5 : 3)}, {"step", 3}},
+      {{"bdf", 2}, {"level", range(1, paper ? 5 : 3)}, {"step", 3}},
+      {{"run", "stability"},
+       {"F", {"extrapolated", "implicit"}},
+       {"bdf", {1, 2}},
+       {"level", 2},
+       {"step", paper ? range(0, 5) : range(1, 3)}},
+      {{"run", "accuracy"}, {"triangulation", {"isothermal", "graded"}}, {"step", 4}}};
+  if (paper)
+    blocks.push_back({{"triangulation", "graded"}, {"level", range(0, 2)}, {"step", {5, 6}}});
+  else
+    blocks.push_back({{"level", range(0, 5)}, {"step", 3}});
+  return blocks;
 }
 
-std::vector<std::string> given_or(const std::vector<std::string>& given, const std::string& otherwise) {
-  return given.empty() ? std::vector<std::string>{otherwise} : given;
+Mesh generated(const Choice& choice) {
+  const bool accuracy = choice["run"] == "accuracy";
+  const int level = choice.level();
+  if (choice["triangulation"] == "graded") {
+    const double largest = edge_length(accuracy ? accuracy_h : largest_h, level);
+    return generate_mesh(torus(major, minor), torus_edge_length(major, minor, largest));
+  }
+  if (!accuracy) require_levels({level}, static_cast<int>(grid_sizes.size()), "isothermal grids");
+  const int n = accuracy ? static_cast<int>(std::lround(accuracy_grid_size * std::pow(2, 0.5 * level)))
+                         : grid_sizes[level];
+  return isothermal_torus_grid(major, minor, n, n);
 }
 
-void require_generated_levels(const Run& run) {
-  const int count = static_cast<int>(grid_sizes.size());
-  if (run.mesh == "isothermal" && run.kind != "accuracy")
-    require_levels({run.level}, count, "isothermal grids");
-}
-
-Setting resolve(const Options& options, const OwnOptions& own) {
-  Setting setting;
-  setting.degree = options.degree.value_or(2);
-  setting.start = options.start.value_or(Start{});
-  setting.meshes = options.meshes;
-  setting.rule = quadrature_or_default(own.quadrature, setting.degree);
-  const bool as_in_the_preset = !options.levels && !options.steps && !options.bdf && options.meshes.empty() &&
-                                own.runs.empty() && own.meshes.empty() && own.F.empty() && own.theta.empty();
-  if (as_in_the_preset) {
-    setting.runs = preset_runs(options.preset);
-    return setting;
-  }
-  const std::vector<int> levels = mesh_levels(options, {0});
-  const std::vector<int> steps = options.steps.value_or(range(2, 3));
-  for (const std::string& kind : given_or(own.runs, "convergence")) {
-    for (const std::string& mesh : given_or(own.meshes, "isothermal")) {
-      for (const std::string& F : given_or(own.F, "extrapolated")) {
-        for (const std::string& theta : given_or(own.theta, "no")) {
-          add_runs({kind, mesh, F, theta, options.bdf.value_or(1)}, levels, steps, setting.runs);
-        }
-      }
-    }
-  }
-  if (options.meshes.empty()) {
-    for (const Run& run : setting.runs) require_generated_levels(run);
-  }
-  return setting;
-}
-
-Mesh corner_mesh_of(const Run& run) {
-  const bool accuracy = run.kind == "accuracy";
-  if (run.mesh == "isothermal") {
-    const int n = accuracy ? static_cast<int>(std::lround(accuracy_grid_size * std::pow(2, 0.5 * run.level)))
-                           : grid_sizes.at(run.level);
-    return isothermal_torus_grid(major, minor, n, n);
-  }
-  const double largest = edge_length(accuracy ? accuracy_h : largest_h, run.level);
-  return generate_mesh(torus(major, minor), torus_edge_length(major, minor, largest));
-}
-
-Row run_cell(const Setting& setting, const Run& run, Row row) {
+void run(const Choice& choice, Row& row, const std::string&) {
   // 1. The initial surface and the finite element space on it.
   const Mesh mesh = initial_mesh(
-      setting.meshes, run.level, [&] { return corner_mesh_of(run); }, torus(major, minor), setting.degree);
-  const SurfaceSpace space(mesh, setting.rule);
+      choice, [&] { return generated(choice); }, torus(major, minor));
+  const SurfaceSpace space(mesh, choice.quadrature());
   describe_mesh(mesh, row);
 
   // 2. The flow from exact values, with the errors of each step.
-  StationaryWillmore flow;
-  flow.variant.F =
-      run.F == "implicit" ? WillmoreFlow::Variant::implicit : WillmoreFlow::Variant::extrapolated;
-  flow.theta = run.theta == "yes";
-  flow.grid = {run.bdf, row.tau, row.steps, setting.start};
-  run_stationary_willmore(space, mesh, stationary_torus(major, minor), flow, exact_energy, {}, row);
-  return row;
+  StationaryWillmore setting;
+  if (choice["F"] == "implicit") setting.variant.F = WillmoreFlow::Variant::implicit;
+  setting.theta = choice["theta"] == "yes";
+  setting.grid = {choice.bdf(), row.tau, row.steps, choice.start()};
+  run_stationary_willmore(space, mesh, stationary_torus(major, minor), setting, exact_energy, {}, row);
 }
 
-nlohmann::json labels(const Run& run) {
-  return {{"run", run.kind}, {"projection", "projected"}, {"mesh", run.mesh},
-          {"F", run.F},      {"theta", run.theta},        {"bdf", run.bdf}};
+double estimated_nodes(const Choice& choice) {
+  if (choice["run"] == "accuracy") return 1936 * std::pow(2, choice.level());
+  if (choice["triangulation"] == "isothermal" && choice.level() < static_cast<int>(grid_sizes.size()))
+    return 4 * std::pow(grid_sizes[choice.level()], 2);
+  return 850 * std::pow(2, choice.level());
 }
 
-std::string cell_name(const Run& run) {
-  return run.kind + "_" + run.mesh + "_" + run.F + (run.theta == "yes" ? "_theta" : "") +
-         format("_bdf%d_h%d_tau%d", run.bdf, run.level, run.k);
-}
-
-double estimated_nodes(const Run& run) {
-  if (run.kind == "accuracy") return 1936 * std::pow(2, run.level);
-  if (run.mesh == "isothermal" && run.level < static_cast<int>(grid_sizes.size()))
-    return 4 * std::pow(grid_sizes.at(run.level), 2);
-  return 850 * std::pow(2, run.level);
-}
-
-/// Seconds on one core: a step with its errors takes about 8 microseconds a node, 30 where F is
-/// implicit.
-double estimated_cost(const Setting& setting, const Run& run) {
-  const double nodes = estimated_nodes(run) * setting.degree * setting.degree / 4;
-  return 0.1 + nodes * time_steps.count(run.k) * (run.F == "implicit" ? 30e-6 : 8e-6);
-}
-
-std::vector<Cell> cells(const Setting& setting) {
-  std::vector<Cell> list;
-  for (const Run& run : setting.runs) {
-    list.push_back({cell_name(run), estimated_cost(setting, run),
-                    [=](const Row& row, const std::string&) { return run_cell(setting, run, row); },
-                    planned_row(run.level, time_steps, run.k, labels(run))});
-  }
-  return list;
-}
-
-nlohmann::json parameters(const Setting& setting, const std::string& preset) {
-  const char* generated =
-      "isothermal: n x n cells, n = 8, 12, 16, 24, 32, 44; graded: generated, largest edge 0.7 2^(-level/2)";
-  return {{"preset", preset},
-          {"major", major},
-          {"minor", minor},
-          {"end_time", time_steps.end_time},
-          {"degree", setting.degree},
-          {"start", to_string(setting.start)},
-          {"quadrature", setting.rule.name},
-          {"meshes", mesh_parameter(setting.meshes, generated)}};
+/// A step with its errors takes about 8 microseconds a node, 30 where F is implicit.
+double cost(const Choice& choice) {
+  const double nodes = estimated_nodes(choice) * choice.degree() * choice.degree() / 4;
+  return 0.1 + nodes * time_steps.count(choice.step()) * (choice["F"] == "implicit" ? 30e-6 : 8e-6);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  OwnOptions own;
-  Experiment experiment;
+  GridExperiment experiment;
   experiment.stem = "willmore_clifford_torus";
   experiment.paper = "kll21";
   experiment.help =
@@ -234,23 +125,25 @@ int main(int argc, char** argv) {
       "2^-k, k = 0,\n"
       "1, ..; isothermal grids of n x n cells, n = 8, 12, 16, 24, 32, 44 at level 0, 1, .., graded meshes "
       "with largest edges\n"
-      "0.7 2^(-j/2), level j. Lengths and times have no units: V = Lap H + Q.\n"
-      "Without options for runs, meshes and methods: the runs of the preset. With one of them: all "
-      "combinations, where not\n"
-      "given convergence, isothermal, extrapolated, no theta, BDF1, level 0, k = 2..3.\n\n"
-      "Example: willmore_clifford_torus --runs convergence --levels 0-2 --steps 2 --output table.json";
-  experiment.add_options = [&](CommandLine& line) {
-    line.names("--runs", known_runs, own.runs,
-               "convergence: Figure 7.4 | stability: the same, over tau | accuracy: about 1,936 nodes");
-    line.names("--torus-mesh", known_meshes, own.meshes,
-               "isothermal: uniform in isothermal coordinates | graded: unstructured, finer at the hole");
-    line.names("--F", known_F, own.F, "F(x, u) w of (3.5a): extrapolated | implicit in w");
-    line.names("--theta", known_theta, own.theta, "the correction (3.7)");
-    add_quadrature_option(line, own.quadrature);
-  };
-  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
-  experiment.parameters = [&](const Options& options) {
-    return parameters(resolve(options, own), options.preset);
-  };
+      "0.7 2^(-j/2), level j. Lengths and times have no units: V = Lap H + Q.\n\n"
+      "Example: willmore_clifford_torus --levels 0-2 --steps 2 --output table.json";
+  experiment.grid.axes = {
+      {"run",
+       {"convergence", "stability", "accuracy"},
+       "convergence: Figure 7.4 | stability: the same, over tau | accuracy: about 1,936 nodes"},
+      {"triangulation",
+       {"isothermal", "graded"},
+       "isothermal: uniform in isothermal coordinates | graded: unstructured, finer at the hole"},
+      {"F", {"extrapolated", "implicit"}, "F(x, u) w of (3.5a): extrapolated | implicit in w"},
+      {"theta", {"no", "yes"}, "the correction (3.7)"}};
+  experiment.grid.labels = {"run", "triangulation", "F", "theta", "bdf"};
+  experiment.grid.otherwise = otherwise;
+  experiment.grid.preset = preset;
+  experiment.steps = [](const Choice&) { return time_steps; };
+  experiment.cost = cost;
+  experiment.run = run;
+  experiment.parameters = {{"major", major}, {"minor", minor}, {"end_time", time_steps.end_time}};
+  experiment.meshes =
+      "isothermal: n x n cells, n = 8, 12, 16, 24, 32, 44; graded: generated, largest edge 0.7 2^(-level/2)";
   return run_experiment(experiment, argc, argv);
 }

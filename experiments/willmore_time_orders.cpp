@@ -16,10 +16,8 @@
 // lost: about 0.4 is what remains, whatever q is.
 #include <cmath>
 
-#include "experiments/harness/experiment.hpp"
-#include "experiments/harness/grid.hpp"
+#include "experiments/harness/grid_experiment.hpp"
 #include "experiments/harness/small_steps.hpp"
-#include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/willmore_flow.hpp"
 
@@ -30,35 +28,15 @@ using State = WillmoreFlow::State;
 
 const HalvedSteps time_steps{0.4, 0.1};
 const int reference_k = 8;  ///< tau = 0.4/1,024
-const std::vector<std::string> known_projections = {"none", "projected"};
 
-struct OwnOptions {
-  std::vector<std::string> projections = known_projections;
-};
+Block otherwise(bool paper) {
+  return {{"degree", 2}, {"bdf", range(1, 4)}, {"step", range(paper ? 3 : 4, 6)}};
+}
 
-struct Setting {
-  int degree;
-  std::vector<int> orders, steps;
-  std::vector<std::string> projections;
-};
-
-Setting resolve(const Options& options, const OwnOptions& own) {
-  if (!options.meshes.empty() || options.start || options.levels) {
-    throw InputError(
-        "--mesh, --start, --levels: mesh and starting values are those of the solution with small steps; "
-        "expected "
-        "--bdf, --steps, --projection");
-  }
-  Setting setting;
-  setting.degree = options.degree.value_or(2);
-  setting.orders = options.bdf ? std::vector<int>{*options.bdf} : range(1, 4);
-  setting.steps = options.steps.value_or(options.preset == "paper" ? range(3, 6) : range(4, 6));
-  for (const int k : setting.steps) {
-    if (k < 1 || k > reference_k - 2)
-      throw InputError(format("--steps: found %d, expected 1 to %d", k, reference_k - 2));
-  }
-  setting.projections = own.projections;
-  return setting;
+HalvedSteps steps(const Choice& choice) {
+  const int k = choice.step(), last = reference_k - 2;
+  if (k < 1 || k > last) throw InputError(format("--steps: found %d, expected 1 to %d", k, last));
+  return time_steps;
 }
 
 /// The state at t = 0.1, from the exact normal and mean curvature at t = 0.
@@ -88,57 +66,31 @@ void record_errors(WillmoreFlow& flow, const SurfaceSpace& space, const State& i
   });
 }
 
-Row run_cell(const Setting& setting, int bdf, const std::string& projection, Row row) {
+void run(const Choice& choice, Row& row, const std::string&) {
   // 1. The ellipsoid and the finite element space on it: 162 nodes (quadratic elements).
   const Vec3 axes(2, 2, 1.6);
   const Surface surface = ellipsoid(axes[0], axes[1], axes[2]);
   Mesh sphere = icosphere(1, 1);
   sphere.nodes *= axes.asDiagonal();
   const Mesh mesh = initial_mesh(
-      {}, 0, [&] { return sphere; }, surface, setting.degree);
-  const SurfaceSpace space(mesh);
+      {}, 0, [&] { return sphere; }, surface, choice.degree());
+  const SurfaceSpace space(mesh, choice.quadrature());
   describe_mesh(mesh, row);
 
   // 2. The flow and its state behind the initial layer.
   WillmoreFlow::Variant variant;
-  variant.project = projection == "projected";
+  variant.project = choice["projection"] == "projected";
   WillmoreFlow flow(space, variant);
   const State initial = behind_the_layer(space, surface, mesh.nodes, flow);
 
   // 3. The time steps, with small steps and with those of the row.
-  record_errors(flow, space, initial, {bdf, row.tau, row.steps, {}}, row);
-  return row;
-}
-
-std::vector<Cell> cells(const Setting& setting) {
-  std::vector<Cell> list;
-  for (const std::string& projection : setting.projections) {
-    for (const int bdf : setting.orders) {
-      for (const int k : setting.steps) {
-        list.push_back(
-            {format("%s_bdf%d_tau%d", projection.c_str(), bdf, k), 2,
-             [=](const Row& row, const std::string&) { return run_cell(setting, bdf, projection, row); },
-             planned_row(0, time_steps, k, {{"bdf", bdf}, {"projection", projection}})});
-      }
-    }
-  }
-  return list;
-}
-
-nlohmann::json parameters(const Setting& setting, const std::string& preset) {
-  return {{"preset", preset},
-          {"end_time", time_steps.end_time},
-          {"degree", setting.degree},
-          {"surface", "ellipsoid with half axes 2, 2, 1.6"},
-          {"start", "solution with small steps"},
-          {"errors", "against BDF5 with 1,024 steps on the same mesh, behind the initial layer"}};
+  record_errors(flow, space, initial, {choice.bdf(), row.tau, row.steps, {}}, row);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  OwnOptions own;
-  Experiment experiment;
+  GridExperiment experiment;
   experiment.stem = "willmore_time_orders";
   experiment.paper = "kll21";
   experiment.help =
@@ -147,13 +99,18 @@ int main(int argc, char** argv) {
       "and\n"
       "z_h, against small steps on the same mesh. Step sizes 0.1 2^-k, k = 1..6. No units.\n\n"
       "Example: willmore_time_orders --bdf 2 --steps 3-6 --output table.json";
-  experiment.add_options = [&](CommandLine& line) {
-    line.names("--projection", known_projections, own.projections,
-               "none | projected: nu_h and z_h after each step; both unless given");
-  };
-  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
-  experiment.parameters = [&](const Options& options) {
-    return parameters(resolve(options, own), options.preset);
-  };
+  experiment.grid.axes = {{"projection", {"none", "projected"}, "of nu_h and z_h after each step"}};
+  experiment.grid.labels = {"projection", "bdf"};
+  experiment.grid.otherwise = otherwise;
+  const std::string why = "mesh and starting values are those of the solution with small steps";
+  experiment.grid.refused = {{"mesh", why}, {"start", why}, {"level", why}};
+  experiment.steps = steps;
+  experiment.cost = [](const Choice&) { return 2; };
+  experiment.run = run;
+  experiment.parameters = {
+      {"end_time", time_steps.end_time},
+      {"surface", "ellipsoid with half axes 2, 2, 1.6"},
+      {"start", "solution with small steps"},
+      {"errors", "against BDF5 with 1,024 steps on the same mesh, behind the initial layer"}};
   return run_experiment(experiment, argc, argv);
 }

@@ -119,7 +119,7 @@ Table table_of(const std::string& arguments) {
 
 TEST(WillmoreSphere, SaysHowNormalsAndRadiiDevelop) {
   const Table table =
-      table_of("willmore_sphere --runs normals --steps 2 --mesh " + std::string(ESFEM_SOURCE_DIR) +
+      table_of("willmore_sphere --run normals --steps 2 --mesh " + std::string(ESFEM_SOURCE_DIR) +
                "/reference/independent/sphere_radius1_162.msh");
   ASSERT_EQ(table.rows.size(), 2u);
   for (const Row& row : table.rows) {
@@ -135,7 +135,7 @@ TEST(WillmoreSphere, SaysHowNormalsAndRadiiDevelop) {
 
 TEST(WillmoreCliffordTorus, ImplicitCouplingEndsBeforeItsTime) {
   const Table table =
-      table_of("willmore_clifford_torus --runs stability --F extrapolated,implicit --levels 1 --steps 2");
+      table_of("willmore_clifford_torus --run stability --F extrapolated,implicit --levels 1 --steps 2");
   ASSERT_EQ(table.rows.size(), 2u);
   for (const Row& row : table.rows) {
     SCOPED_TRACE(row.cell);
