@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <set>
 
 #include "solver/error.hpp"
 
@@ -27,14 +26,29 @@ Block merged(Block first, const Block& second) {
   return first;
 }
 
+/// The option that gives values of an axis.
+std::string option_of(const std::string& axis) {
+  return "--" + axis + (axis == "level" || axis == "step" ? "s" : "");
+}
+
 void require_taken(const Grid& grid, const GridRequest& request) {
   const auto refuse = [&](const std::string& axis) {
     const auto found = grid.refused.find(axis);
-    const char* plural = axis == "level" || axis == "step" ? "s" : "";
-    if (found != grid.refused.end()) throw InputError("--" + axis + plural + ": " + found->second);
+    if (found != grid.refused.end()) throw InputError(option_of(axis) + ": " + found->second);
   };
   for (const auto& [axis, values] : request.given) refuse(axis);
   if (!request.meshes.empty()) refuse("mesh");
+  if (!request.rule.empty()) refuse("quadrature");
+}
+
+/// Throws InputError unless two runs of the same name are the same.
+void require_same(const std::string& name, const Point& one, const Point& other) {
+  for (const auto& [axis, value] : one) {
+    const auto found = other.find(axis);
+    if (found == other.end() || found->second != value)
+      throw InputError(option_of(axis) + ": found several values for the run " + name +
+                       ", expected one: no label tells its rows apart");
+  }
 }
 
 std::string part_of_name(const std::string& axis, const nlohmann::json& value) {
@@ -90,13 +104,18 @@ std::vector<Choice> choices(const Grid& grid, const GridRequest& request) {
     combine(whole, whole.begin(), point, points);
   }
   std::vector<Choice> choices;
-  std::set<std::string> seen;
+  std::map<std::string, Point> seen;
   for (const Point& point : points) {
     const Choice choice(point, request.meshes, request.rule);
     if (files > 0 && choice.level() >= files)
       throw InputError(format("--levels: found %d, expected less than %d, the number of --mesh files",
                               choice.level(), files));
-    if (seen.insert(cell_name(grid, choice)).second) choices.push_back(choice);
+    if (!grid.admits(choice)) continue;
+    const auto [same, is_new] = seen.emplace(cell_name(grid, choice), point);
+    if (is_new)
+      choices.push_back(choice);
+    else
+      require_same(same->first, same->second, point);
   }
   return choices;
 }

@@ -92,8 +92,10 @@ struct Grid {
   /// As soon as one axis is given on the command line, all combinations of the given values and these. It
   /// need not say anything of an axis with known names: then all of them.
   std::function<Block(bool paper)> otherwise;
-  /// Options of all experiments that this one does not take, "mesh", "start", .., and why.
+  /// Options of all experiments that this one does not take, "mesh", "start", "quadrature", .., and why.
   std::map<std::string, std::string> refused = {};
+  /// Whether a combination is a run of its own; throws InputError for one that cannot be computed.
+  std::function<bool(const Choice&)> admits = [](const Choice&) { return true; };
 };
 
 /// What the command line says of the grid.
@@ -104,8 +106,8 @@ struct GridRequest {
   std::string rule;
 };
 
-/// The runs, each once. Throws InputError for an option that the experiment does not take, and when there are
-/// mesh files and a level has none.
+/// The runs, each once. Throws InputError for an option that the experiment does not take, for runs that
+/// differ in an axis that no label tells, and when there are mesh files and a level has none.
 std::vector<Choice> choices(const Grid& grid, const GridRequest& request);
 
 /// The name of a run: its labels, "h" and the level, "tau" and the step, where it has these. Of an axis with

@@ -47,10 +47,26 @@ struct AxisOptions {
   }
 };
 
-Cell cell_of(const GridExperiment& experiment, const Choice& choice) {
-  const auto run = [&experiment, choice](Row row, const std::string& folder) {
+/// The row of a run; of one that fails, what is known beforehand, and of its mesh.
+Row row_of(const GridExperiment& experiment, const Choice& choice, const Row& planned,
+           const std::string& folder) {
+  Row row = planned;
+  try {
     experiment.run(choice, row, folder);
-    return row;
+  } catch (const NumericsError& error) {
+    const double h = row.h;
+    const int nodes = row.nodes;
+    row = planned;
+    row.h = h;
+    row.nodes = nodes;
+    row.status = std::string("failed: ") + error.what();
+  }
+  return row;
+}
+
+Cell cell_of(const GridExperiment& experiment, const Choice& choice) {
+  const auto run = [&experiment, choice](const Row& planned, const std::string& folder) {
+    return row_of(experiment, choice, planned, folder);
   };
   const HalvedSteps steps = experiment.steps(choice);
   const int k = choice.has("step") ? choice.step() : 0;

@@ -50,7 +50,7 @@ void add_run_options(CommandLine& line, Request& request) {
 }
 
 void add_method_options(CommandLine& line, Options& options) {
-  line.group("Method (not given: as in the preset)");
+  line.group("Method (none of these: the runs of the preset; else all combinations of the values given)");
   line.integer("--degree", 1, 4, options.degree, "polynomial degree of the finite elements");
   line.integer("--bdf", 1, 5, options.bdf, "order of the backward difference formula");
   line.parsed(

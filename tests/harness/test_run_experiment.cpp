@@ -42,10 +42,10 @@ class RunExperiment : public testing::Test {
   }
   void TearDown() override { fs::remove_all(folder); }
 
-  Outcome run(const std::string& arguments) const {
+  Outcome run(const std::string& arguments, const std::string& environment = "") const {
     const fs::path out = folder / "stdout", err = folder / "stderr";
-    const std::string command = "cd " + folder.string() +
-                                " && exec " ESFEM_BINARY_DIR "/bin/fake_experiment " + arguments + " >" +
+    const std::string command = "cd " + folder.string() + " && exec env " + environment +
+                                " " ESFEM_BINARY_DIR "/bin/fake_experiment " + arguments + " >" +
                                 out.string() + " 2>" + err.string();
     const int status = std::system(command.c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(out), content(err)};
@@ -76,7 +76,7 @@ TEST_F(RunExperiment, HelpGoesToStandardOutputAndSaysEverything) {
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.err, "");
   for (const char* part :
-       {"Sample run", "--preset", "=paper", "--cell", "--start", "--failing-cell", "Exit codes"})
+       {"Sample run", "--preset", "=paper", "--cell", "--start", "--exponent", "Exit codes"})
     EXPECT_THAT(help.out, HasSubstr(part));
 }
 
@@ -87,6 +87,9 @@ TEST_F(RunExperiment, BadCommandLinesGetOneLineWithWhatIsAcceptedAndExit1) {
       {"--preset coarse", "check,paper"},
       {"--degree 5", "1 to 4"},
       {"--bdf x", "1 to 5"},
+      {"--bdf 2", "the formula has no steps"},
+      {"--exponent soon", "--exponent"},
+      {"--exponent 1,2", "expected one: no label"},
       {"--levels 3-1", "0-4"},
       {"--levels 1,,2", "0,1,2"},
       {"--steps=-1", "0-4"},
@@ -115,6 +118,16 @@ TEST_F(RunExperiment, ListsTheDearestCellFirst) {
 
 TEST_F(RunExperiment, LevelsAndStepsSelectCells) {
   EXPECT_EQ(run("--list --levels 2 --steps 0,2-3").out, "h2_tau3 128.00\nh2_tau2 64.00\nh2_tau0 16.00\n");
+}
+
+TEST_F(RunExperiment, AnOptionOfItsOwnReachesTheRunsAndTheParameters) {
+  ASSERT_EQ(run("--exponent 4 --output all.json").exit_code, 0);
+  const Table all = table("all.json");
+  ASSERT_EQ(all.rows.size(), 4u);
+  EXPECT_NEAR(all.rows[2].errors.at("u").at("nodal_L2"), 0.0625 + 1e-3, 1e-12);
+  EXPECT_EQ(all.parameters.at("exponent"), 4);
+  EXPECT_EQ(all.parameters.at("degree"), 2);
+  EXPECT_EQ(all.parameters.at("preset"), "paper");
 }
 
 TEST_F(RunExperiment, CellWritesATableOfOneRowAndNothingElse) {
@@ -154,41 +167,42 @@ TEST_F(RunExperiment, PeakMemoryIsNotThatOfTheProgramThatStartedIt) {
 #endif
 
 TEST_F(RunExperiment, AFailedCellIsARowWithItsStatus) {
-  const Outcome outcome = run("--cell h1_tau0 --failing-cell h1_tau0 --output cell.json");
+  const Outcome outcome = run("--cell h1_tau0 --output cell.json", "FAILING_CELL=h1_tau0");
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_EQ(outcome.err, "fake_experiment: cell h1_tau0: failed: step 3, t = 0.3: element 7 is degenerate\n");
   const Row row = table("cell.json").rows.at(0);
   EXPECT_EQ(row.status, "failed: step 3, t = 0.3: element 7 is degenerate");
-  EXPECT_EQ(row.h, 0.5) << "what is known beforehand stays in the row";
+  EXPECT_EQ(row.tau, 0.1) << "what is known beforehand stays in the row";
+  EXPECT_EQ(row.h, 0.5) << "and its mesh";
   EXPECT_TRUE(row.errors.empty());
 }
 
 TEST_F(RunExperiment, AFailureThatIsNotTheMethodsLeavesNoRow) {
-  const Outcome outcome = run("--cell h1_tau0 --memory-cell h1_tau0 --output cell.json");
+  const Outcome outcome = run("--cell h1_tau0 --output cell.json", "MEMORY_CELL=h1_tau0");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_EQ(outcome.err, "fake_experiment: out of memory\n");
   EXPECT_TRUE(files().empty());
 }
 
 TEST_F(RunExperiment, SecondsAreThoseOfAllProcesses) {
-  run("--cell h0_tau0 --earlier-seconds 1000 --milliseconds 50 --output cell.json");
+  run("--cell h0_tau0 --output cell.json", "EARLIER_SECONDS=1000 MILLISECONDS=50");
   EXPECT_GT(table("cell.json").rows.at(0).seconds, 1000.05);
 }
 
 TEST_F(RunExperiment, MakesTheFolderOfItsOutputOrRefusesItBeforehand) {
   EXPECT_EQ(run("--output new/folder/all.json").exit_code, 0);
   EXPECT_EQ(table("new/folder/all.json").rows.size(), 4u);
-  const Outcome outcome = run("--milliseconds 60000 --output new");
+  const Outcome outcome = run("--output new", "MILLISECONDS=60000");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("new: cannot be written: it is a folder"));
   fs::create_directory(folder / "a.csv");
-  EXPECT_THAT(run("--milliseconds 60000 --output a.json").err, HasSubstr("a.csv: cannot be written"));
+  EXPECT_THAT(run("--output a.json", "MILLISECONDS=60000").err, HasSubstr("a.csv: cannot be written"));
 }
 
 TEST_F(RunExperiment, TheCheckpointGoesWhenTheRowIsWritten) {
   fs::create_directory(folder / "h0_tau0");
   std::ofstream(folder / "h0_tau0/checkpoint") << "of this cell";
-  EXPECT_EQ(run("--cell h0_tau0 --memory-cell h0_tau0 --output h0_tau0.json").exit_code, 2);
+  EXPECT_EQ(run("--cell h0_tau0 --output h0_tau0.json", "MEMORY_CELL=h0_tau0").exit_code, 2);
   EXPECT_TRUE(fs::exists(folder / "h0_tau0/checkpoint"));
   EXPECT_EQ(run("--cell h0_tau0 --output h0_tau0.json").exit_code, 0);
   EXPECT_FALSE(fs::exists(folder / "h0_tau0/checkpoint"));
@@ -236,7 +250,7 @@ TEST_F(RunExperiment, CollectingKeepsTheProvenanceOfTheCells) {
 }
 
 TEST_F(RunExperiment, RunsAndCollectsAllWithoutCell) {
-  const Outcome outcome = run("--failing-cell h0_tau1 --output all.json");
+  const Outcome outcome = run("--output all.json", "FAILING_CELL=h0_tau1");
   EXPECT_EQ(outcome.exit_code, 0);
   const Table all = table("all.json");
   ASSERT_EQ(all.rows.size(), 4u) << "a failed run is a row, never a missing one";
@@ -245,13 +259,13 @@ TEST_F(RunExperiment, RunsAndCollectsAllWithoutCell) {
 }
 
 TEST_F(RunExperiment, FilesOfARunAreBesideItsTable) {
-  run("--cell h0_tau1 --writing-cell h0_tau1 --output h0_tau1.json");
+  run("--cell h0_tau1 --output h0_tau1.json", "WRITING_CELL=h0_tau1");
   EXPECT_TRUE(fs::exists(folder / "h0_tau1/snapshot"));
-  run("--writing-cell h0_tau1 --output all.json");
+  run("--output all.json", "WRITING_CELL=h0_tau1");
   EXPECT_TRUE(fs::exists(folder / "cells/fake_experiment/h0_tau1/snapshot"));
   // Without a table there is no place for them.
   const auto before = files().size();
-  run("--cell h0_tau1 --writing-cell h0_tau1");
+  run("--cell h0_tau1", "WRITING_CELL=h0_tau1");
   EXPECT_EQ(files().size(), before);
 }
 
