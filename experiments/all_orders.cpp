@@ -3,8 +3,8 @@
 // All orders: polynomial degree k = 1, .., 4 and BDF q = 1, .., 5 for each flow
 //
 // Sample runs:  build/bin/all_orders --preset check --output orders.json
-//               build/bin/all_orders --flows willmore --degree 2 --bdf 3 --runs time
-//               build/bin/all_orders --flows dziuk --bdf 4 --runs time --steps 2-5
+//               build/bin/all_orders --flow willmore --degree 2 --bdf 3 --run time
+//               build/bin/all_orders --flow dziuk --bdf 4 --run time --steps 0-3
 //
 // Writes:       results/paper/all_orders.{json,csv,tex}, from which plots/all_orders.py draws
 //               figures/gallery/all_orders
@@ -35,129 +35,93 @@
 //
 // With nu_h and z_h projected after each step Willmore flow on the Clifford torus is unstable with BDF5 for
 // tau from 0.0006 to 0.005 (BDF4 in one of two runs), and BDF3 is not.
-#include <cmath>
+#include <algorithm>
 
 #include "experiments/harness/all_orders_problems.hpp"
-#include "experiments/harness/experiment.hpp"
-#include "experiments/harness/grid.hpp"
-#include "solver/error.hpp"
+#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/small_steps.hpp"
 
 namespace {
 
 using namespace esfem;
 
-const std::vector<std::string> known_runs = {"space", "time"};
 /// Step sizes of an order in tau, and meshes of an order in h.
 const int step_count = 3, level_count = 3;
 
-struct OwnOptions {
-  std::vector<std::string> flows, runs = known_runs;
-};
+const OrdersOfFlow& orders_of(const Choice& choice) {
+  for (const OrdersOfFlow& flow : orders_of_flows())
+    if (flow.flow == choice["flow"]) return flow;
+  throw std::logic_error("there are no orders of the flow " + choice["flow"]);
+}
 
-/// A run with the exponent of its step size.
-struct Planned {
-  OrderRun run;
-  int k;
-};
+std::vector<std::string> known_flows() {
+  std::vector<std::string> names;
+  for (const OrdersOfFlow& flow : orders_of_flows()) names.push_back(flow.flow);
+  return names;
+}
+
+Block otherwise(bool paper) {
+  return {{"flow", known_flows()},
+          {"degree", paper ? range(1, 4) : range(2, 2)},
+          {"bdf", paper ? range(1, 5) : range(2, 2)},
+          {"run", {"space", "time"}},
+          {"level", range(0, level_count - 1)},
+          {"step", range(0, step_count - 1)}};
+}
+
+/// Check: P2 and BDF2, of Dziuk's scheme that BDF4 is unstable.
+std::vector<Block> preset(bool paper) {
+  if (paper) return {{}};
+  std::vector<std::string> others = known_flows();
+  others.erase(std::find(others.begin(), others.end(), "dziuk"));
+  return {{{"flow", others}}, {{"flow", "dziuk"}, {"bdf", 4}, {"run", "space"}}};
+}
+
+bool in_time(const Choice& choice) {
+  return choice["run"] == "time";
+}
+
+/// The step sizes of a run: the first depends on flow and BDF.
+HalvedSteps steps(const Choice& choice) {
+  const OrdersOfFlow& flow = orders_of(choice);
+  const HalvedSteps& steps = in_time(choice) ? flow.time : flow.space;
+  const int first = (in_time(choice) ? flow.first_k : flow.space_k).at(choice.bdf() - 1);
+  return {steps.end_time, steps.tau(first)};
+}
 
 /// The small steps are smaller than those of an order 2^gap times: they are of order 3 at least.
-int reference_gap(int bdf) {
-  return bdf <= 2 ? 1 : 2;
+int reference_k(const Choice& choice) {
+  const int gap = choice.bdf() <= 2 ? 1 : 2;
+  return orders_of(choice).first_k.at(choice.bdf() - 1) + std::max(choice.step(), step_count - 1) + gap;
 }
 
-/// All runs of one flow with one degree and order.
-void add_runs(const OrdersOfFlow& flow, int degree, int bdf, const std::vector<std::string>& kinds,
-              const Options& options, std::vector<Planned>& runs) {
-  for (const std::string& kind : kinds) {
-    if (kind == "time") {
-      const int first = flow.first_k.at(bdf - 1);
-      const std::vector<int> steps = options.steps.value_or(range(first, first + step_count - 1));
-      const int reference = *std::max_element(steps.begin(), steps.end()) + reference_gap(bdf);
-      for (int k : steps) runs.push_back({{flow, degree, bdf, true, 0, reference}, k});
-    } else {
-      for (int k : options.steps.value_or(std::vector<int>{flow.space_k.at(bdf - 1)})) {
-        for (int level : options.levels.value_or(range(0, level_count - 1)))
-          runs.push_back({{flow, degree, bdf, false, level, 0}, k});
-      }
-    }
-  }
+/// Orders in tau are those on one mesh, orders in h those with one step size.
+bool belongs_to_an_order(const Choice& choice) {
+  if (!in_time(choice)) return choice.step() == 0;
+  if (choice.level() != 0) return false;
+  // A run with 2 tau stands beside.
+  const double doubled = 2 * steps(choice).tau(choice.step());
+  require_starting_values(choice.step(), choice.bdf(), doubled, orders_of(choice).begin);
+  return true;
 }
 
-/// Those of the preset check: P2 and BDF2, of Dziuk's scheme that BDF4 is unstable.
-void add_check_runs(const OrdersOfFlow& flow, const Options& options, std::vector<Planned>& runs) {
-  if (flow.flow == "dziuk")
-    add_runs(flow, 2, 4, {"space"}, options, runs);
-  else
-    add_runs(flow, 2, 2, known_runs, options, runs);
+void run(const Choice& choice, Row& row, const std::string&) {
+  row = run_all_orders({orders_of(choice), choice.degree(), choice.bdf(), in_time(choice), choice.level(),
+                        in_time(choice) ? reference_k(choice) : 0},
+                       row);
 }
 
-/// Throws InputError when small steps do not give all the starting values of a run with 2 tau.
-void require_starting_values(const Planned& planned) {
-  const OrdersOfFlow& flow = planned.run.flow;
-  const double doubled = 2 * flow.time.tau(planned.k);
-  if (planned.run.in_time && planned.run.bdf * doubled > flow.begin * (1 + 1e-9)) {
-    throw InputError(
-        format("--steps: found %d, expected more for %s: BDF%d needs %d steps of %g before t = %g", planned.k,
-               flow.flow.c_str(), planned.run.bdf, planned.run.bdf, doubled, flow.begin));
-  }
+double cost(const Choice& choice) {
+  const OrdersOfFlow& flow = orders_of(choice);
+  const double h = in_time(choice) ? flow.time_h.at(choice.degree() - 1)
+                                   : flow.edge_length(choice.degree(), choice.level());
+  const double vertices = flow.vertices / (h * h), nodes = vertices * choice.degree() * choice.degree();
+  const double small_steps = in_time(choice) ? flow.time.count(reference_k(choice)) : 0;
+  const double all_steps = small_steps + 1.5 * steps(choice).count(choice.step());
+  return 0.05 + vertices * 2e-4 + nodes * all_steps * flow.seconds_per_node;
 }
 
-bool wanted(const std::vector<std::string>& names, const std::string& name) {
-  return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
-}
-
-std::vector<Planned> planned_runs(const Options& options, const OwnOptions& own) {
-  if (!options.meshes.empty() || options.start)
-    throw InputError(
-        "--mesh, --start: meshes and starting values are those of the problems; expected --flows, --degree, "
-        "--bdf, --runs, --levels, --steps");
-  std::vector<Planned> runs;
-  const bool check = options.preset == "check" && !options.degree && !options.bdf && own.runs == known_runs;
-  const std::vector<int> degrees = options.degree ? std::vector<int>{*options.degree} : range(1, 4);
-  const std::vector<int> orders = options.bdf ? std::vector<int>{*options.bdf} : range(1, 5);
-  for (const OrdersOfFlow& flow : orders_of_flows()) {
-    if (!wanted(own.flows, flow.flow)) continue;
-    if (check) {
-      add_check_runs(flow, options, runs);
-      continue;
-    }
-    for (int degree : degrees) {
-      for (int bdf : orders) add_runs(flow, degree, bdf, own.runs, options, runs);
-    }
-  }
-  for (const Planned& planned : runs) require_starting_values(planned);
-  return runs;
-}
-
-/// Seconds on one core.
-double estimated_cost(const Planned& planned) {
-  const OrderRun& run = planned.run;
-  const double h =
-      run.in_time ? run.flow.time_h.at(run.degree - 1) : run.flow.edge_length(run.degree, run.level);
-  const double vertices = run.flow.vertices / (h * h), nodes = vertices * run.degree * run.degree;
-  const double steps = run.in_time
-                           ? run.flow.time.count(run.reference_k) + 1.5 * run.flow.time.count(planned.k)
-                           : 1.5 * run.flow.space.count(planned.k);
-  return 0.05 + vertices * 2e-4 + nodes * steps * run.flow.seconds_per_node;
-}
-
-std::vector<Cell> cells(const std::vector<Planned>& runs) {
-  std::vector<Cell> list;
-  for (const Planned& planned : runs) {
-    const OrderRun run = planned.run;
-    const char* kind = run.in_time ? "time" : "space";
-    const HalvedSteps& steps = run.in_time ? run.flow.time : run.flow.space;
-    list.push_back(
-        {run.flow.flow + format("_p%d_bdf%d_%s_h%d_tau%d", run.degree, run.bdf, kind, run.level, planned.k),
-         estimated_cost(planned),
-         [=](const Row& row, const std::string&) { return run_all_orders(run, row); },
-         planned_row(run.level, steps, planned.k,
-                     {{"flow", run.flow.flow}, {"degree", run.degree}, {"bdf", run.bdf}, {"run", kind}})});
-  }
-  return list;
-}
-
-nlohmann::json parameters(const Options& options) {
+nlohmann::json parameters() {
   nlohmann::json problems;
   for (const OrdersOfFlow& flow : orders_of_flows()) {
     problems[flow.flow] = {{"problem", flow.problem},
@@ -167,7 +131,6 @@ nlohmann::json parameters(const Options& options) {
                            {"end_time_in_time", flow.time.end_time}};
   }
   return {
-      {"preset", options.preset},
       {"problems", problems},
       {"errors", "space: at the end time, against the exact solution; time: maxima, against small steps"}};
 }
@@ -175,27 +138,27 @@ nlohmann::json parameters(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  OwnOptions own;
-  Experiment experiment;
+  GridExperiment experiment;
   experiment.stem = "all_orders";
   experiment.paper = "esfem";
   experiment.help =
       "The orders in h and tau of each flow for polynomial degrees 1 to 4 and BDF 1 to 5. Orders in h come "
-      "from "
-      "errors against\n"
-      "exact solutions on three meshes (levels 0, 1, 2), orders in tau from errors against small steps on "
-      "one mesh "
-      "with three\n"
-      "step sizes, k = first, first + 1, first + 2, of which the first depends on flow and BDF. No units.\n"
+      "from errors against\nexact solutions on three meshes (levels 0, 1, 2), orders in tau from errors "
+      "against small steps on one mesh with three\nstep sizes (steps 0, 1, 2), of which the first depends on "
+      "flow and BDF. No units.\n"
       "Preset check: P2 with BDF2, and Dziuk's scheme with BDF4.\n\n"
-      "Example: all_orders --flows willmore --degree 2 --bdf 3 --output table.json";
-  experiment.add_options = [&](CommandLine& line) {
-    std::vector<std::string> flows;
-    for (const OrdersOfFlow& flow : orders_of_flows()) flows.push_back(flow.flow);
-    line.names("--flows", flows, own.flows, "all unless given");
-    line.names("--runs", known_runs, own.runs, "space: orders in h | time: orders in tau; both unless given");
-  };
-  experiment.cells = [&](const Options& options) { return cells(planned_runs(options, own)); };
-  experiment.parameters = parameters;
+      "Example: all_orders --flow willmore --degree 2 --bdf 3 --output table.json";
+  experiment.grid.axes = {{"flow", known_flows(), "as in evolve"},
+                          {"run", {"space", "time"}, "space: orders in h | time: orders in tau"}};
+  experiment.grid.labels = {"flow", "degree", "bdf", "run"};
+  experiment.grid.otherwise = otherwise;
+  experiment.grid.preset = preset;
+  const std::string why = "meshes, starting values and quadrature are those of the problems";
+  experiment.grid.refused = {{"mesh", why}, {"start", why}, {"quadrature", why}};
+  experiment.grid.admits = belongs_to_an_order;
+  experiment.steps = steps;
+  experiment.cost = cost;
+  experiment.run = run;
+  experiment.parameters = parameters();
   return run_experiment(experiment, argc, argv);
 }

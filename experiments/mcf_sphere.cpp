@@ -20,12 +20,12 @@
 // superconverge in space (order 3 in H1, 4 for H), and nu shows no order in time, because it is constant
 // along trajectories. x and H reach order 3 in tau slowly: slopes of x between neighbouring step sizes
 // are 2.3, 2.6, 2.75 from tau = 0.1 down.
-#include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/last_state.hpp"
 #include "experiments/harness/mean_curvature_flows.hpp"
+#include "experiments/harness/timed.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/mesh/generate.hpp"
@@ -72,15 +72,6 @@ std::vector<Block> preset(bool paper) {
   return blocks;
 }
 
-/// The last state of a run of (5.1) from given initial values.
-MeanCurvatureFlow::State end_of(const SurfaceSpace& space, const UniformSteps& grid,
-                                const MeanCurvatureFlow::State& initial) {
-  MeanCurvatureFlow flow(space, {});
-  MeanCurvatureFlow::State end;
-  integrate(flow, grid, initial, [&](int, const MeanCurvatureFlow::State& state) { end = state; });
-  return end;
-}
-
 /// How much an error in the length of nu_h grows until the end: |nu_h| of a run whose initial normals are a
 /// little too long, compared with a run where they are not.
 double growth_of_length(const SurfaceSpace& space, const UniformSteps& grid,
@@ -88,31 +79,24 @@ double growth_of_length(const SurfaceSpace& space, const UniformSteps& grid,
   const double excess = 1e-4;
   MeanCurvatureFlow::State disturbed = initial;
   disturbed.u.leftCols(3) *= 1 + excess;
-  const auto mean_length = [](const MeanCurvatureFlow::State& state) {
-    return state.u.leftCols(3).rowwise().norm().mean();
+  const auto length_at_end = [&](const MeanCurvatureFlow::State& start) {
+    MeanCurvatureFlow flow(space, {});
+    return last_state(flow, grid, start).u.leftCols(3).rowwise().norm().mean();
   };
-  return (mean_length(end_of(space, grid, disturbed)) - mean_length(end_of(space, grid, initial))) / excess;
+  return (length_at_end(disturbed) - length_at_end(initial)) / excess;
 }
 
-/// How many times as long as one of Dziuk's scheme a run of (5.1) takes: the median of pairs of runs.
+/// Run time of (5.1) relative to Dziuk's scheme.
 double cost_ratio(const SurfaceSpace& space, const UniformSteps& grid, const ExactEvolution& exact,
                   const Field& x0) {
-  const auto seconds = [&](auto flow, const auto& exact_state) {
-    using State = decltype(exact_state(0.0));
-    const auto begin = std::chrono::steady_clock::now();
-    integrate(flow, grid, {exact_state(0.0), std::function<State(double)>(exact_state)},
-              [](int, const State&) {});
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const auto seconds = [&](const std::string& name) {
+    double seconds = 0;
+    with_mean_curvature_flow(name, space, exact, x0, [&](auto flow, const auto& exact_state) {
+      seconds = seconds_of([&] { last_state(flow, grid, {exact_state(0.0), exact_state}); });
+    });
+    return seconds;
   };
-  std::vector<double> ratios;
-  for (int pair = 0; pair < 5; ++pair) {
-    const double dziuk = seconds(DziukFlow(space), [&](double t) { return exact_dziuk_state(exact, x0, t); });
-    const double kll = seconds(MeanCurvatureFlow(space, {}),
-                               [&](double t) { return exact_mean_curvature_state(exact, x0, t); });
-    ratios.push_back(kll / dziuk);
-  }
-  std::sort(ratios.begin(), ratios.end());
-  return ratios[ratios.size() / 2];
+  return median_seconds_ratio([&] { return seconds("dziuk"); }, [&] { return seconds("mean_curvature"); });
 }
 
 /// The largest distance in a node between nu_h and the normal of Gamma_h[x].

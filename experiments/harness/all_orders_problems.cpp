@@ -2,7 +2,11 @@
 #include "experiments/harness/all_orders_problems.hpp"
 
 #include <cmath>
+#include <functional>
+#include <map>
+#include <stdexcept>
 
+#include "experiments/harness/growing_sphere_runs.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/constants.hpp"
@@ -10,7 +14,6 @@
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/evolving_ellipsoid.hpp"
-#include "solver/flows/growing_sphere.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/generate.hpp"
@@ -99,10 +102,7 @@ struct CoupledOnSphere {
   ExactEvolution exact = growing_sphere();
 
   CoupledOnSphere(int degree, double h, double) : on(sphere(1), generate_mesh(sphere(1), h), degree) {}
-  Flow flow() const {
-    const CoupledDiffusionParameters parameters;
-    return {on.space, GrowingSphereProblem(parameters, CoupledDiffusionVariant::regularised), parameters, {}};
-  }
+  Flow flow() const { return growing_sphere_flow(on.space, {}); }
   Flow::State state(double t) const { return exact_growing_sphere_state(on.space, exact, on.mesh.nodes, t); }
 };
 
@@ -222,18 +222,6 @@ void note_instability(Row& row, Body&& body) {
 }
 
 template <class Problem>
-typename Problem::Flow::State end_of(const Problem& problem, typename Problem::Flow& flow,
-                                     const UniformSteps& grid) {
-  using State = typename Problem::Flow::State;
-  State end;
-  integrate(flow, grid, {problem.state(0), [&](double t) { return problem.state(t); }},
-            [&](int n, const State& state) {
-              if (n == grid.steps) end = state;
-            });
-  return end;
-}
-
-template <class Problem>
 Errors errors_at_end(const Problem& problem, const typename Problem::Flow::State& end) {
   ErrorRecorder recorder(problem.on.space, problem.exact, problem.on.mesh.nodes);
   recorder.record(end);
@@ -249,8 +237,10 @@ void run_in_space(const OrderRun& run, Row& row) {
   note_instability(row, [&] {
     typename Problem::Flow flow = problem.flow();
     const double t = row.steps * row.tau;
-    const auto end = end_of(problem, flow, {run.bdf, row.tau, row.steps, {}});
-    const auto end_of_double = end_of(problem, flow, {run.bdf, 2 * row.tau, row.steps / 2, {}});
+    const StartingValues<typename Problem::Flow::State> start(problem.state(0),
+                                                              [&](double t) { return problem.state(t); });
+    const auto end = last_state(flow, {run.bdf, row.tau, row.steps, {}}, start);
+    const auto end_of_double = last_state(flow, {run.bdf, 2 * row.tau, row.steps / 2, {}}, start);
     const Errors errors = errors_at_end(problem, end);
     const Errors doubled = errors_at_end(problem, end_of_double);
     if (grows(run.flow, errors, doubled, growth_in_space)) {
@@ -303,6 +293,7 @@ void run_in_time(const OrderRun& run, Row& row) {
   });
 }
 
+/// In space and in time; the problems may differ.
 template <class InSpace, class InTime = InSpace>
 void run_problem(const OrderRun& run, Row& row) {
   if (run.in_time)
@@ -346,17 +337,15 @@ double OrdersOfFlow::edge_length(int degree, int level) const {
 }
 
 Row run_all_orders(const OrderRun& run, Row row) {
-  const std::string& flow = run.flow.flow;
-  if (flow == "mean_curvature")
-    run_problem<MeanCurvatureOnTorus>(run, row);
-  else if (flow == "dziuk")
-    run_problem<DziukOnTorus>(run, row);
-  else if (flow == "coupled_diffusion")
-    run_problem<CoupledOnSphere>(run, row);
-  else if (flow == "willmore")
-    run_problem<WillmoreOnTorus, WillmoreOnEllipsoid>(run, row);
-  else
-    run_problem<CahnHilliardOnEllipsoid>(run, row);
+  using Runs = std::map<std::string, std::function<void(const OrderRun&, Row&)>>;
+  static const Runs runs = {{"mean_curvature", run_problem<MeanCurvatureOnTorus>},
+                            {"dziuk", run_problem<DziukOnTorus>},
+                            {"coupled_diffusion", run_problem<CoupledOnSphere>},
+                            {"willmore", run_problem<WillmoreOnTorus, WillmoreOnEllipsoid>},
+                            {"cahn_hilliard", run_problem<CahnHilliardOnEllipsoid>}};
+  const auto found = runs.find(run.flow.flow);
+  if (found == runs.end()) throw std::logic_error("there is no problem for the flow " + run.flow.flow);
+  found->second(run, row);
   return row;
 }
 

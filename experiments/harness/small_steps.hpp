@@ -7,9 +7,18 @@
 #include <vector>
 
 #include "solver/analysis/errors.hpp"
+#include "solver/error.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem {
+
+/// Throws InputError that names --steps unless small steps give all the starting values of BDF of order q
+/// with step size tau, that of --steps k, before they are compared from the time `begin` on.
+inline void require_starting_values(int k, int q, double tau, double begin) {
+  if (q * tau > begin * (1 + 1e-9))
+    throw InputError(format("--steps: found %d, expected more: BDF%d needs %d steps of %g before t = %g", k,
+                            q, q, tau, begin));
+}
 
 /// A solution with small steps, and runs with larger ones that it gives the starting values. Exact starting
 /// values are off the discrete solution by the error in space; how far is a matter of tau, and this would

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "experiments/harness/all_orders_problems.hpp"
+#include "experiments/harness/last_state.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
@@ -120,6 +121,28 @@ TEST(AllOrders, DziuksSchemeIsUnstableWithBdf5) {
   const Row unstable = row_in_space(flow, 2, 5, 2);
   EXPECT_EQ(unstable.values.at("unstable"), 1);
   EXPECT_TRUE(unstable.errors.empty());
+}
+
+TEST(AllOrders, AFlowWithoutProblemRunsNoOther) {
+  OrdersOfFlow flow = flow_named("mean_curvature");
+  flow.flow = "mean";
+  EXPECT_THROW(row_in_space(flow, 2, 2, 1), std::logic_error);
+}
+
+TEST(SmallStepsTest, MustGiveAllStartingValues) {
+  EXPECT_NO_THROW(require_starting_values(2, 4, 0.1, 0.4));
+  try {
+    require_starting_values(1, 4, 0.2, 0.4);
+    FAIL() << "four steps of 0.2 are no starting values at 0.4";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "--steps: found 1, expected more: BDF4 needs 4 steps of 0.2 before t = 0.4");
+  }
+}
+
+TEST(LastState, IsThatOfTheLastStep) {
+  LinearOde flow;
+  EXPECT_DOUBLE_EQ(last_state(flow, {2, 0.25, 4, {}}, {LinearOde::exact(0), LinearOde::exact}).t, 1);
+  EXPECT_DOUBLE_EQ(last_state(flow, {2, 0.25, 0, {}}, {LinearOde::exact(0), LinearOde::exact}).t, 0);
 }
 
 }  // namespace
