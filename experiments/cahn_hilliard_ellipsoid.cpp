@@ -4,7 +4,7 @@
 //
 // Sample runs:  build/bin/cahn_hilliard_ellipsoid --preset check --output ellipsoid.json
 //               build/bin/cahn_hilliard_ellipsoid --bdf 3 --levels 0-2 --steps 2-4
-//               build/bin/cahn_hilliard_ellipsoid --runs interpolation --degree 2 --levels 0,1 --steps 4
+//               build/bin/cahn_hilliard_ellipsoid --run interpolation --degree 2 --levels 0,1 --steps 4
 //
 // Writes:       results/paper/cahn_hilliard_ellipsoid.{json,csv,tex}, from which
 //               plots/cahn_hilliard_ellipsoid.py draws figures/bk22/fig2 .. fig5
@@ -32,18 +32,11 @@
 // starting values are off the discrete solution (w 0.030 at tau = 0.025 on 2,491 nodes; BDF4 0.004).
 #include <cmath>
 #include <deque>
-#include <map>
-#include <memory>
-#include <optional>
 
-#include "experiments/harness/experiment.hpp"
-#include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
+#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/moving_mesh.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
-#include "solver/error.hpp"
-#include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/mesh/generate.hpp"
 
 namespace {
@@ -59,136 +52,44 @@ const int smallest_step = 7;  ///< the i of the smallest published tau
 /// values are only close to a smooth one.
 const double orders_begin = 0.4;
 
-/// The kinds of runs, as --runs names them and as rows are labelled.
-const std::vector<std::string> known_runs = {"ritz_theta", "interpolation", "order", "derivative", "printed"};
+Block otherwise(bool) {
+  return {{"run", "ritz_theta"}, {"degree", 1}, {"bdf", 3},
+          {"start", "exact"},    {"level", 1},  {"step", range(2, 5)}};
+}
 
-/// One run of the grid: tau = 0.2 2^-i.
-struct Run {
-  std::string kind;
-  int degree, bdf, level, i;
-};
-
-struct OwnOptions {
-  std::string quadrature;
-  std::vector<std::string> runs;
-};
-
-struct Setting {
-  std::vector<Run> runs;
-  Start start;
-  std::vector<std::string> meshes;
-  std::string quadrature;
-  int smallest;  ///< the i of the smallest tau, with which the nodes move
-};
-
-/// Appends all combinations.
-struct Grid {
-  std::string kind;
-  int degree;
-  std::vector<int> orders, levels, steps;
-
-  void add_to(std::vector<Run>& runs) const {
-    for (int bdf : orders) {
-      for (int level : levels) {
-        for (int i : steps) runs.push_back({kind, degree, bdf, level, i});
-      }
-    }
-  }
-};
-
-std::vector<Run> preset_runs(const std::string& preset) {
-  std::vector<Grid> grids;
-  if (preset == "paper") {
-    grids = {{"ritz_theta", 1, {1, 3}, range(0, 4), range(1, 7)},
-             {"ritz_theta", 1, {2, 4, 5}, range(0, 3), range(2, 5)},
-             {"ritz_theta", 2, {4}, range(0, 2), {4}},
-             {"interpolation", 1, {3}, range(0, 3), {4, 5}},
-             {"order", 1, {1}, {1}, {5, 6, 7}},
-             {"order", 1, {2, 3, 4, 5}, {1}, {3, 4, 5}},
-             {"derivative", 1, {3}, range(1, 3), {3}},
-             {"printed", 1, {1}, {1}, {3, 4, 5}}};
+std::vector<Block> preset(bool paper) {
+  const int coarse = paper ? 1 : 0;
+  std::vector<Block> blocks = {
+      {{"degree", 2}, {"bdf", 4}, {"level", range(0, 2)}, {"step", 4}},
+      {{"run", "interpolation"}, {"level", range(0, 3)}, {"step", paper ? range(4, 5) : range(4, 4)}},
+      {{"run", "order"}, {"bdf", 1}, {"level", coarse}, {"step", range(5, 7)}},
+      {{"run", "order"}, {"bdf", range(2, 5)}, {"level", coarse}, {"step", range(3, 5)}},
+      {{"run", "derivative"}, {"level", range(1, 3)}, {"step", 3}},
+      {{"run", "printed"}, {"bdf", 1}, {"step", range(3, 5)}}};
+  if (paper) {
+    blocks.push_back({{"bdf", {1, 3}}, {"level", range(0, 4)}, {"step", range(1, smallest_step)}});
+    blocks.push_back({{"bdf", {2, 4, 5}}, {"level", range(0, 3)}});
   } else {
-    grids = {{"ritz_theta", 1, {1}, range(1, 3), range(3, 5)},
-             {"ritz_theta", 1, {3}, range(1, 3), range(2, 4)},
-             {"ritz_theta", 2, {4}, range(0, 2), {4}},
-             {"interpolation", 1, {3}, range(0, 3), {4}},
-             {"order", 1, {1}, {0}, {5, 6, 7}},
-             {"order", 1, {2, 3, 4, 5}, {0}, {3, 4, 5}},
-             {"derivative", 1, {3}, range(1, 3), {3}},
-             {"printed", 1, {1}, {1}, {3, 4, 5}}};
+    blocks.push_back({{"bdf", 1}, {"level", range(1, 3)}, {"step", range(3, 5)}});
+    blocks.push_back({{"level", range(1, 3)}, {"step", range(2, 4)}});
   }
-  std::vector<Run> runs;
-  for (const Grid& grid : grids) grid.add_to(runs);
-  return runs;
+  return blocks;
 }
 
-/// Throws InputError when a run of the kind "order" does not find all its starting values before its begin.
-void require_starting_values(const Run& run) {
-  if (run.kind == "order" && run.bdf * time_steps.tau(run.i) > orders_begin * (1 + 1e-9))
-    throw InputError(
-        format("--steps: found %d, expected more for --runs order: BDF%d needs %d steps of "
-               "0.2 2^-i before t = %g",
-               run.i, run.bdf, run.bdf, orders_begin));
+bool finds_starting_values(const Choice& choice) {
+  if (choice["run"] == "order")
+    require_starting_values(choice.step(), choice.bdf(), time_steps.tau(choice.step()), orders_begin);
+  return true;
 }
 
-Setting resolve(const Options& options, const OwnOptions& own) {
-  Setting setting;
-  setting.start = options.start.value_or(Start{});
-  setting.meshes = options.meshes;
-  setting.quadrature = own.quadrature;
-  const bool as_in_the_preset = !options.degree && !options.levels && !options.steps && !options.bdf &&
-                                options.meshes.empty() && own.runs.empty();
-  if (as_in_the_preset) {
-    setting.runs = preset_runs(options.preset);
-  } else {
-    const std::vector<std::string> kinds =
-        own.runs.empty() ? std::vector<std::string>{"ritz_theta"} : own.runs;
-    for (const std::string& kind : kinds) {
-      Grid{kind,
-           options.degree.value_or(1),
-           {options.bdf.value_or(3)},
-           mesh_levels(options, {1}),
-           options.steps.value_or(range(2, 5))}
-          .add_to(setting.runs);
-    }
-  }
-  setting.smallest = smallest_step;
-  for (const Run& run : setting.runs) {
-    setting.smallest = std::max(setting.smallest, run.i);
-    require_starting_values(run);
-  }
-  return setting;
-}
-
-/// A mesh and what all runs on it share: above all the positions of its nodes, at all steps of the smallest
-/// tau. Runs that are processes of their own compute them anew: that takes 0.03 microseconds a node and step,
-/// beside 12 for a step of a run with its errors, and reading them from a file would not take less.
-struct MovingMesh {
-  ManufacturedCahnHilliard exact{EvolvingEllipsoid{}, epsilon};
-  Mesh mesh;
-  SurfaceSpace space;
-  double smallest_tau;
-  MovingNodes nodes;
-
-  /// substeps: how many of them the starting steps take. The positions at all of them are too many to keep.
-  MovingMesh(Mesh initial, const Quadrature& rule, double tau, int substeps)
-      : mesh(std::move(initial)),
-        space(mesh, rule),
-        smallest_tau(tau),
-        nodes(exact.ellipsoid().velocity(), mesh.nodes, tau / substeps,
-              substeps > 1 ? MovingNodes::newest_few : MovingNodes::all) {}
-};
-
-/// Made by the first run that needs it.
-using SharedMesh = std::shared_ptr<std::optional<MovingMesh>>;
-
-MovingMesh& moving_mesh(const Setting& setting, const Run& run, std::optional<MovingMesh>& shared) {
+MovingMesh& moving_mesh(const Choice& choice, MovingMeshes& meshes) {
+  const int smallest = std::max(smallest_step, choice.step());
+  std::optional<MovingMesh>& shared = meshes[{choice.level(), choice.degree(), smallest}];
   if (!shared) {
     const Surface surface = sphere(1);
-    const auto generate = [&] { return generate_mesh(surface, edge_length(largest_h, 2 * run.level)); };
-    shared.emplace(initial_mesh(setting.meshes, run.level, generate, surface, run.degree),
-                   quadrature_or_default(setting.quadrature, run.degree), time_steps.tau(setting.smallest),
-                   setting.start.substeps_per_step);
+    const auto generate = [&] { return generate_mesh(surface, edge_length(largest_h, 2 * choice.level())); };
+    shared.emplace(epsilon, initial_mesh(choice, generate, surface), choice.quadrature(),
+                   time_steps.tau(smallest), choice.start().substeps_per_step);
   }
   return *shared;
 }
@@ -234,52 +135,25 @@ Flow cahn_hilliard_flow(MovingMesh& on, Field theta, double factor_of_load = 1) 
       std::move(theta));
 }
 
-/// d•u = -6u + v . grad u of the exact solution, its quantity u_derivative. The gradient by differences in
-/// space.
-ExactEvolution exact_derivative(MovingMesh& on) {
-  const auto value = [&on, velocity = on.exact.ellipsoid().velocity()](const Vec3& x, double t) {
-    Field v;
-    velocity(t, x.transpose(), v);
-    return -6 * on.exact.u(x, t) + std::exp(-6 * t) * (v(0, 0) * x[1] + v(0, 1) * x[0]);
-  };
-  ExactEvolution exact;
-  exact.quantities = {{"u_derivative", 1}};
-  exact.surface = [&on](double t) { return on.exact.ellipsoid().surface(t); };
-  exact.trajectories = [&on](const Field&, double t) { return on.nodes.at(t); };
-  exact.fields = [value](double t, const SurfacePoints& at, FieldsAtPoints& out) {
-    const double step = 1e-5;
-    for (int lane = 0; lane < pack_size; ++lane) {
-      const Vec3 y = lane_of(at.y, lane), nu = lane_of(at.normal, lane);
-      Vec3 gradient;
-      for (int i = 0; i < 3; ++i)
-        gradient[i] = (value(y + step * Vec3::Unit(i), t) - value(y - step * Vec3::Unit(i), t)) / (2 * step);
-      gradient -= nu.dot(gradient) * nu;
-      out.value[0][lane] = value(y, t);
-      for (int i = 0; i < 3; ++i) out.gradient[0][i][lane] = gradient[i];
-    }
-  };
-  return exact;
-}
-
 /// Errors of d•u from Ritz maps with theta, where the backward differences of u stand for the derivative
 /// along the nodes: in L2 over [q tau, 1], the integrals as sums over the steps.
-void run_derivative(MovingMesh& on, const UniformSteps& grid, Row& row) {
+void measure_derivative(MovingMesh& on, const UniformSteps& steps, Row& row) {
   const ExactState starts = exact_starts(on, StartValues::ritz);
   const State start = starts(0);
   Flow flow = cahn_hilliard_flow(on, theta_of(on.space, start));
   const ExactEvolution exact = exact_derivative(on);
-  const std::vector<double> delta = bdf_delta(grid.order);
+  const std::vector<double> delta = bdf_delta(steps.order);
   std::deque<Field> newest;  // first, of q + 1 steps
   double L2 = 0, H1_semi = 0;
-  integrate(flow, grid, {start, starts}, [&](int n, const State& state) {
+  integrate(flow, steps, {start, starts}, [&](int n, const State& state) {
     newest.push_front(state.u);
-    if (n < grid.order) return;
-    newest.resize(grid.order + 1);
+    if (n < steps.order) return;
+    newest.resize(steps.order + 1);
     Field derivative = Field::Zero(state.u.rows(), 1);
-    for (int j = 0; j <= grid.order; ++j) derivative += delta[j] / grid.tau * newest[j];
+    for (int j = 0; j <= steps.order; ++j) derivative += delta[j] / steps.tau * newest[j];
     const SquaredNorms norms = lifted_errors(on.space, state.x, exact, state.t, derivative);
-    L2 += grid.tau * norms.L2[0];
-    H1_semi += grid.tau * norms.H1_semi[0];
+    L2 += steps.tau * norms.L2[0];
+    H1_semi += steps.tau * norms.H1_semi[0];
   });
   row.errors["u_derivative"] = {{"lifted_L2", std::sqrt(L2)},
                                 {"lifted_H1", std::sqrt(L2 + H1_semi)},
@@ -288,18 +162,18 @@ void run_derivative(MovingMesh& on, const UniformSteps& grid, Row& row) {
 
 /// Errors against the exact solution: maxima over n >= 0, or n >= q from interpolated starting values. As
 /// printed the first line of (8.3) has f where it should have tau f: the load is too large by 1/tau.
-void run_convergence(MovingMesh& on, const std::string& kind, const UniformSteps& grid, Row& row) {
-  const bool ritz = kind != "interpolation";
+void measure_errors(MovingMesh& on, const std::string& run, const UniformSteps& steps, Row& row) {
+  const bool ritz = run != "interpolation";
   const ExactState starts = exact_starts(on, ritz ? StartValues::ritz : StartValues::interpolation);
   const State start = starts(0);
   Flow flow = cahn_hilliard_flow(on, ritz ? theta_of(on.space, start) : Field(),
-                                 kind == "printed" ? 1 / grid.tau : 1);
+                                 run == "printed" ? 1 / steps.tau : 1);
 
   const ExactEvolution exact = exact_evolution(on.exact, on.nodes);
   ErrorRecorder errors(on.space, exact, on.mesh.nodes), initial_errors(on.space, exact, on.mesh.nodes);
   initial_errors.record(start);
-  const int first = ritz ? 0 : grid.order;
-  integrate(flow, grid, {start, starts}, [&](int n, const State& state) {
+  const int first = ritz ? 0 : steps.order;
+  integrate(flow, steps, {start, starts}, [&](int n, const State& state) {
     if (n >= first) errors.record(state);
   });
   row.errors = errors.maxima();
@@ -309,110 +183,77 @@ void run_convergence(MovingMesh& on, const std::string& kind, const UniformSteps
 
 /// Errors from orders_begin on against the solution of the same discretisation in space, by BDF5 and small
 /// steps.
-void run_order(MovingMesh& on, const UniformSteps& grid, Row& row) {
+void measure_order(MovingMesh& on, const UniformSteps& steps, Row& row) {
   const UniformSteps small{
       5, on.smallest_tau, static_cast<int>(std::lround(time_steps.end_time / on.smallest_tau)), {}};
   const ExactState starts = exact_starts(on, StartValues::ritz);
   const State start = starts(0);
   Flow flow = cahn_hilliard_flow(on, theta_of(on.space, start));
-  const SmallSteps reference(flow, small, start, starts, small.steps / grid.steps);
+  const SmallSteps reference(flow, small, start, starts, small.steps / steps.steps);
 
   LargestDifferences differences(on.space, {{"u", 1}, {"w", 1}});
-  const int first = static_cast<int>(std::lround(orders_begin / grid.tau));
-  reference.compare(grid.order, grid.tau, first, [&](int, const State& state, const State& exact) {
+  const int first = static_cast<int>(std::lround(orders_begin / steps.tau));
+  reference.compare(steps.order, steps.tau, first, [&](int, const State& state, const State& exact) {
     differences.add(state.x, state, exact);
   });
   row.errors = differences.errors();
 }
 
-nlohmann::json labels(const Run& run) {
-  return {{"run", run.kind}, {"bdf", run.bdf}, {"degree", run.degree}};
-}
-
-Row run_cell(const Setting& setting, const Run& run, const SharedMesh& shared, Row row) {
-  MovingMesh& on = moving_mesh(setting, run, *shared);
+void run(const Choice& choice, Row& row, MovingMeshes& meshes) {
+  MovingMesh& on = moving_mesh(choice, meshes);
   describe_mesh(on.mesh, row);
-  const UniformSteps grid{run.bdf, row.tau, row.steps, setting.start};
-  if (run.kind == "order") {
-    run_order(on, grid, row);
-  } else if (run.kind == "derivative") {
-    run_derivative(on, grid, row);
-  } else {
-    run_convergence(on, run.kind, grid, row);
-  }
-  return row;
+  const UniformSteps steps{choice.bdf(), row.tau, row.steps, choice.start()};
+  if (choice["run"] == "order")
+    measure_order(on, steps, row);
+  else if (choice["run"] == "derivative")
+    measure_derivative(on, steps, row);
+  else
+    measure_errors(on, choice["run"], steps, row);
 }
 
-std::string cell_name(const Run& run) {
-  const std::string kind = run.kind == "ritz_theta" ? "" : run.kind + "_";
-  const std::string degree = run.degree == 1 ? "" : format("p%d_", run.degree);
-  return kind + degree + format("bdf%d_h%d_tau%d", run.bdf, run.level, run.i);
-}
-
-/// Seconds on one core: a step with its errors takes about 12 microseconds a P1 node and 8 a P2 node, without
-/// errors 5; a mesh with its trajectories takes 0.1 ms a vertex.
-double estimated_cost(const Run& run) {
-  const double vertices = 27.5 / std::pow(edge_length(largest_h, 2 * run.level), 2);
-  const double nodes = vertices * run.degree * run.degree;
-  const double steps = time_steps.count(run.i);
-  const double microseconds = run.kind == "order" ? 5 * (steps + time_steps.count(smallest_step))
-                                                  : (run.degree == 1 ? 12 : 8) * steps;
+/// A step with its errors takes about 12 microseconds a P1 node and 8 a P2 node, without errors 5; a mesh
+/// with its trajectories takes 0.1 ms a vertex.
+double cost(const Choice& choice) {
+  const double vertices = 27.5 / std::pow(edge_length(largest_h, 2 * choice.level()), 2);
+  const double nodes = vertices * choice.degree() * choice.degree();
+  const double steps = time_steps.count(choice.step());
+  const double microseconds = choice["run"] == "order" ? 5 * (steps + time_steps.count(smallest_step))
+                                                       : (choice.degree() == 1 ? 12 : 8) * steps;
   return 0.02 + 1e-4 * vertices + 1e-6 * nodes * microseconds;
-}
-
-std::vector<Cell> cells(const Setting& setting) {
-  std::map<std::pair<int, int>, SharedMesh> meshes;
-  std::vector<Cell> list;
-  for (const Run& run : setting.runs) {
-    SharedMesh& mesh = meshes[{run.level, run.degree}];
-    if (!mesh) mesh = std::make_shared<std::optional<MovingMesh>>();
-    list.push_back({cell_name(run), estimated_cost(run),
-                    [=](const Row& row, const std::string&) { return run_cell(setting, run, mesh, row); },
-                    planned_row(run.level, time_steps, run.i, labels(run))});
-  }
-  return list;
-}
-
-nlohmann::json parameters(const Setting& setting, const std::string& preset) {
-  return {{"preset", preset},
-          {"end_time", time_steps.end_time},
-          {"epsilon", epsilon},
-          {"start", to_string(setting.start)},
-          {"quadrature", setting.quadrature.empty() ? "that of the degree" : setting.quadrature},
-          {"tau_of_the_nodes", time_steps.tau(setting.smallest) / setting.start.substeps_per_step},
-          {"errors", "maxima over n >= 0; interpolation: over n >= q; u_derivative: L2 over time, n >= q"},
-          {"meshes", mesh_parameter(setting.meshes, "generated, edge length 0.84 2^-level")}};
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  OwnOptions own;
-  Experiment experiment;
+  MovingMeshes meshes;
+  GridExperiment experiment;
   experiment.stem = "cahn_hilliard_ellipsoid";
   experiment.paper = "bk22";
   experiment.help =
       "The Cahn-Hilliard equation on an evolving ellipsoid (bk22 Figures 2 to 5): errors of u and w over "
-      "step "
-      "size and mesh\n"
+      "step size and mesh\n"
       "width, maxima over time. Step sizes 0.2 2^-i, i = 1, 2, ..; edge lengths 0.84 2^-j, level j = 0, 1, "
       ".. No units:\n"
-      "epsilon = 1/2.\n"
-      "Without --runs, --degree, --bdf, --levels, --steps, --mesh: the runs of the preset. With one of them: "
-      "all\n"
-      "combinations, where not given ritz_theta, linear elements, BDF3, level 1, i = 2..5.\n\n"
+      "epsilon = 1/2.\n\n"
       "Example: cahn_hilliard_ellipsoid --bdf 3 --levels 0-2 --steps 2-4 --output table.json";
-  experiment.add_options = [&](CommandLine& line) {
-    line.names("--runs", known_runs, own.runs,
-               "ritz_theta: Ritz maps and theta | interpolation: interpolated u, no theta | order: "
-               "errors against small steps | derivative: errors of d•u | printed: (8.3) without tau before "
-               "its load");
-    add_quadrature_option(line, own.quadrature);
-  };
-  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
-  experiment.parameters = [&](const Options& options) {
-    return parameters(resolve(options, own), options.preset);
-  };
+  experiment.grid.axes = {
+      {"run",
+       {"ritz_theta", "interpolation", "order", "derivative", "printed"},
+       "ritz_theta: Ritz maps and theta | interpolation: interpolated u, no theta | order: errors against "
+       "small steps | derivative: errors of d•u | printed: (8.3) without tau before its load"}};
+  experiment.grid.labels = {"run", "bdf", "degree"};
+  experiment.grid.otherwise = otherwise;
+  experiment.grid.preset = preset;
+  experiment.grid.admits = finds_starting_values;
+  experiment.steps = [](const Choice&) { return time_steps; };
+  experiment.cost = cost;
+  experiment.run = [&](const Choice& choice, Row& row, const std::string&) { run(choice, row, meshes); };
+  experiment.parameters = {
+      {"end_time", time_steps.end_time},
+      {"epsilon", epsilon},
+      {"tau_of_the_nodes", "0.2 2^-7, or the step size if that is smaller; with substeps:K a K-th of it"},
+      {"errors", "maxima over n >= 0; interpolation: over n >= q; u_derivative: L2 over time, n >= q"}};
+  experiment.meshes = "generated, edge length 0.84 2^-level";
   experiment.fit_range.tau_max = 0.05;
   return run_experiment(experiment, argc, argv);
 }

@@ -4,8 +4,8 @@
 // §9.2, Figures 6 and 7)
 //
 // Sample runs:  build/bin/cahn_hilliard_energy --preset check --output energy.json
-//               build/bin/cahn_hilliard_energy --levels 4,5 --end-time 0.2
-//               build/bin/cahn_hilliard_energy --bdf 1 --levels 4 --steps 1 --end-time 0.2
+//               build/bin/cahn_hilliard_energy --levels 4,5 --end_time 0.2
+//               build/bin/cahn_hilliard_energy --bdf 1 --levels 4 --steps 1 --end_time 0.2
 //
 // Writes:       results/paper/cahn_hilliard_energy.{json,csv,tex}, from which
 //               plots/cahn_hilliard_energy.py draws figures/bk22/fig6 and fig7
@@ -22,11 +22,9 @@
 #include <cmath>
 #include <optional>
 
-#include "experiments/harness/experiment.hpp"
-#include "experiments/harness/grid.hpp"
+#include "experiments/harness/grid_experiment.hpp"
 #include "solver/analysis/energy_series.hpp"
 #include "solver/constants.hpp"
-#include "solver/error.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/mesh/generate.hpp"
@@ -46,52 +44,25 @@ const std::vector<double> edge_lengths = {0.64459, 0.47455, 0.32288, 0.21643,
                                           0.1519,  0.10475, 0.07412, 0.05203};
 const int level_count = static_cast<int>(edge_lengths.size());
 
-struct Run {
-  int bdf, level, k;
-  double end_time;
-
-  HalvedSteps steps() const { return {end_time, largest_tau}; }
-};
-
-struct OwnOptions {
-  std::optional<double> end_time;
-};
-
-struct Setting {
-  std::vector<Run> runs;
-  int degree;
-  Start start;
-  std::vector<std::string> meshes;
-};
-
-std::vector<Run> preset_runs(const std::string& preset) {
-  std::vector<Run> runs;
-  if (preset == "paper") {
-    for (const int level : range(0, level_count - 1)) runs.push_back({2, level, 0, paper_end});
-    for (const int level : range(3, 6)) runs.push_back({1, level, 0, figure_6_end});
-  } else {
-    runs = {{2, 1, 0, paper_end}, {2, 4, 0, figure_6_end}, {2, 5, 0, 0.05}, {1, 4, 0, 0.05}};
-  }
-  return runs;
+Block otherwise(bool) {
+  return {{"end_time", paper_end},
+          {"degree", 1},
+          {"bdf", 2},
+          {"start", "cascade"},
+          {"level", range(0, level_count - 1)},
+          {"step", 0}};
 }
 
-Setting resolve(const Options& options, const OwnOptions& own) {
-  Setting setting;
-  setting.degree = options.degree.value_or(1);
-  setting.start = options.start.value_or(parse_start("cascade"));
-  setting.meshes = options.meshes;
-  if (setting.start.kind == Start::exact)
-    throw InputError("--start exact: there is no exact solution; expected cascade or substeps:K");
-  if (!options.levels && !options.steps && !options.bdf && !own.end_time && options.meshes.empty()) {
-    setting.runs = preset_runs(options.preset);
-    return setting;
-  }
-  const std::vector<int> levels = mesh_levels(options, range(0, level_count - 1));
-  if (options.meshes.empty()) require_levels(levels, level_count, "levels");
-  for (const int level : levels)
-    for (const int k : options.steps.value_or(std::vector<int>{0}))
-      setting.runs.push_back({options.bdf.value_or(2), level, k, own.end_time.value_or(paper_end)});
-  return setting;
+std::vector<Block> preset(bool paper) {
+  if (paper) return {{{"bdf", 2}}, {{"bdf", 1}, {"level", range(3, 6)}, {"end_time", figure_6_end}}};
+  return {{{"level", 1}},
+          {{"level", 4}, {"end_time", figure_6_end}},
+          {{"level", 5}, {"end_time", 0.05}},
+          {{"bdf", 1}, {"level", 4}, {"end_time", 0.05}}};
+}
+
+HalvedSteps steps(const Choice& choice) {
+  return {choice.number("end_time"), largest_tau};
 }
 
 Field initial_values(const Field& x) {
@@ -146,32 +117,31 @@ void describe_energy(const Series& series, Row& row) {
   row.values["aperiodicity"] = aperiodicity(series, "energy", moving_ellipsoid.period);
 }
 
-std::string cell_name(const Run& run) {
-  return format("bdf%d_h%d_tau%d", run.bdf, run.level, run.k);
-}
-
-Row run_cell(const Setting& setting, const Run& run, Row row, const std::string& folder) {
+void run(const Choice& choice, Row& row, const std::string& folder) {
   // 1. The unit sphere and the finite element space on it.
-  const auto generate = [&] { return generate_mesh(sphere(1), edge_lengths[run.level]); };
-  const Mesh mesh = initial_mesh(setting.meshes, run.level, generate, sphere(1), setting.degree);
-  const SurfaceSpace space(mesh);
+  const auto generate = [&] {
+    require_levels({choice.level()}, level_count, "levels");
+    return generate_mesh(sphere(1), edge_lengths[choice.level()]);
+  };
+  const Mesh mesh = initial_mesh(choice, generate, sphere(1));
+  const SurfaceSpace space(mesh, choice.quadrature());
   describe_mesh(mesh, row);
 
   // 2. The flow on nodes that follow the normal velocity of the surface.
-  MovingNodes nodes(moving_ellipsoid.velocity(), mesh.nodes, row.tau / setting.start.substeps_per_step);
+  MovingNodes nodes(moving_ellipsoid.velocity(), mesh.nodes, row.tau / choice.start().substeps_per_step);
   const NodalMotion motion = [&](double t) -> const Field& { return nodes.at(t); };
   CahnHilliard flow(space, DoubleWell(), motion, epsilon);
 
   // 3. The time steps.
   Series series;
-  std::optional<Checkpoint> checkpoint = checkpoint_in(folder, cell_name(run));
+  std::optional<Checkpoint> checkpoint = checkpoint_in(folder, row.cell);
   if (checkpoint) attach(*checkpoint, series);
-  const UniformSteps grid{run.bdf, row.tau, row.steps, setting.start};
+  const UniformSteps steps{choice.bdf(), row.tau, row.steps, choice.start()};
   const auto record = [&](int, const CahnHilliardState& state) {
     record_energy(space, state, epsilon, series);
   };
   const CahnHilliardState start = initial_state(space, mesh.nodes);
-  integrate(flow, grid, start, checkpoint ? &*checkpoint : nullptr, record);
+  integrate(flow, steps, start, checkpoint ? &*checkpoint : nullptr, record);
   if (checkpoint) row.seconds = checkpoint->seconds_before();
 
   // 4. The row of the table.
@@ -179,42 +149,18 @@ Row run_cell(const Setting& setting, const Run& run, Row row, const std::string&
   describe_energy(series, row);
   row.values["variation"] = variation(space, start, epsilon);
   row.values["variation_as_printed"] = variation(space, start, 1);
-  return row;
 }
 
-/// Seconds on one core; the meshes of level l have about 54 2.11^l nodes.
-double estimated_cost(const Run& run) {
-  const double nodes = 54 * std::pow(2.11, run.level);
-  return run.steps().count(run.k) * (4e-4 + 2.8e-6 * nodes);
-}
-
-std::vector<Cell> cells(const Setting& setting) {
-  std::vector<Cell> list;
-  for (const Run& run : setting.runs) {
-    list.push_back(
-        {cell_name(run), estimated_cost(run),
-         [=](const Row& row, const std::string& folder) { return run_cell(setting, run, row, folder); },
-         planned_row(run.level, run.steps(), run.k, {{"bdf", run.bdf}})});
-  }
-  return list;
-}
-
-nlohmann::json parameters(const Setting& setting, const std::string& preset) {
-  return {{"preset", preset},
-          {"epsilon", epsilon},
-          {"amplitude", moving_ellipsoid.amplitude},
-          {"period", moving_ellipsoid.period},
-          {"degree", setting.degree},
-          {"largest_tau", largest_tau},
-          {"start", to_string(setting.start)},
-          {"meshes", mesh_parameter(setting.meshes, "generated, 54 to 10,145 nodes of linear elements")}};
+/// The meshes of level l have about 54 2.11^l nodes.
+double cost(const Choice& choice) {
+  const double nodes = 54 * std::pow(2.11, choice.level());
+  return steps(choice).count(choice.step()) * (4e-4 + 2.8e-6 * nodes);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  OwnOptions own;
-  Experiment experiment;
+  GridExperiment experiment;
   experiment.stem = "cahn_hilliard_energy";
   experiment.paper = "bk22";
   experiment.help =
@@ -222,17 +168,19 @@ int main(int argc, char** argv) {
       "0.25 sin(10 pi t)\n"
       "(bk22 Figures 6 and 7): time series of energy, mass, min and max of u, and when the energy rises and "
       "falls. Step sizes\n"
-      "1e-4 2^-k; levels 0 to 7: 54 to 10,145 nodes of linear elements. No units.\n"
-      "Without --levels, --steps, --bdf, --end-time, --mesh: the runs of the preset. With one of them: all "
-      "combinations, where\n"
-      "not given of all levels, k = 0, BDF2, t to 1.\n\n"
-      "Example: cahn_hilliard_energy --levels 4 --bdf 3 --end-time 0.2 --output energy.json";
-  experiment.add_options = [&](CommandLine& line) {
-    line.positive("--end-time", own.end_time, "t at the end of each run");
-  };
-  experiment.cells = [&](const Options& options) { return cells(resolve(options, own)); };
-  experiment.parameters = [&](const Options& options) {
-    return parameters(resolve(options, own), options.preset);
-  };
+      "1e-4 2^-k; levels 0 to 7: 54 to 10,145 nodes of linear elements. No units.\n\n"
+      "Example: cahn_hilliard_energy --levels 4 --bdf 3 --end_time 0.2 --output energy.json";
+  experiment.grid.axes = {{"end_time", {}, "t at the end of each run"}};
+  experiment.grid.labels = {"bdf"};
+  experiment.grid.otherwise = otherwise;
+  experiment.grid.preset = preset;
+  experiment.steps = steps;
+  experiment.cost = cost;
+  experiment.run = run;
+  experiment.parameters = {{"epsilon", epsilon},
+                           {"amplitude", moving_ellipsoid.amplitude},
+                           {"period", moving_ellipsoid.period},
+                           {"largest_tau", largest_tau}};
+  experiment.meshes = "generated, 54 to 10,145 nodes of linear elements";
   return run_experiment(experiment, argc, argv);
 }

@@ -37,13 +37,13 @@ const fs::path root = fs::path(ESFEM_BINARY_DIR) / "test_pfhub" / std::to_string
 
 // An order of elimination that differs from process to process would show.
 TEST(CahnHilliardPfhub, IsRepeatedToTheBit) {
-  const Table table = table_of("--levels 1 --end 1", root / "first");
-  EXPECT_EQ(table.rows.at(0).series, table_of("--levels 1 --end 1", root / "second").rows.at(0).series);
+  const Table table = table_of("--levels 1 --end_time 1", root / "first");
+  EXPECT_EQ(table.rows.at(0).series, table_of("--levels 1 --end_time 1", root / "second").rows.at(0).series);
   fs::remove_all(root);
 }
 
 TEST(CahnHilliardPfhub, RecordsEnergiesDomainsAndSnapshots) {
-  const Table table = table_of("--stepping adaptive,moose --levels 0 --end 20", root);
+  const Table table = table_of("--stepping adaptive,moose --levels 0 --end_time 20", root);
   ASSERT_EQ(table.rows.size(), 2u);
   for (const Row& row : table.rows) {
     SCOPED_TRACE(row.cell);

@@ -37,7 +37,7 @@ struct Programs : testing::Test {
 };
 
 TEST_F(Programs, TheEnergyRisesWithTheSurfaceAndTheMassStays) {
-  const Table table = table_of("cahn_hilliard_energy --levels 0,1 --end-time 0.03");
+  const Table table = table_of("cahn_hilliard_energy --levels 0,1 --end_time 0.03");
   ASSERT_EQ(table.rows.size(), 2u);
   for (const Row& row : table.rows) {
     SCOPED_TRACE(row.cell);
@@ -55,7 +55,7 @@ TEST_F(Programs, TheEnergyRisesWithTheSurfaceAndTheMassStays) {
 }
 
 TEST_F(Programs, TheDerivativeOfUConvergesLikeUAndItsGradientLikeH) {
-  const Table table = table_of("cahn_hilliard_ellipsoid --runs derivative --levels 1,2 --steps 3");
+  const Table table = table_of("cahn_hilliard_ellipsoid --run derivative --levels 1,2 --steps 3");
   ASSERT_EQ(table.rows.size(), 2u);
   const auto order = [&](const char* norm) {
     const auto error = [&](const Row& row) { return row.errors.at("u_derivative").at(norm); };
@@ -69,7 +69,7 @@ TEST_F(Programs, TheDerivativeOfUConvergesLikeUAndItsGradientLikeH) {
 
 TEST_F(Programs, TheLoadAsPrintedIsTooLarge) {
   const auto error = [&](const std::string& runs) {
-    return table_of("cahn_hilliard_ellipsoid --bdf 1 --levels 0 --steps 3 --runs " + runs)
+    return table_of("cahn_hilliard_ellipsoid --bdf 1 --levels 0 --steps 3 --run " + runs)
         .rows.at(0)
         .errors.at("u")
         .at("nodal_L2");
@@ -82,23 +82,23 @@ TEST_F(Programs, RefuseStartingValuesThatNobodyKnows) {
   EXPECT_EQ(exit_code("cahn_hilliard_initial_values --start exact"), exit_usage);
   EXPECT_EQ(exit_code("cahn_hilliard_energy --levels 8"), exit_usage);
   EXPECT_EQ(exit_code("cahn_hilliard_initial_values --levels 4"), exit_usage);
-  EXPECT_EQ(exit_code("cahn_hilliard_energy --end-time 0"), exit_usage);
+  EXPECT_EQ(exit_code("cahn_hilliard_energy --end_time 0"), exit_usage);
   EXPECT_EQ(exit_code("cahn_hilliard_initial_values --epsilon -1"), exit_usage);
 }
 
-TEST_F(Programs, InitialValuesDifferByWhatTheSchemesSay) {
+TEST_F(Programs, SolutionsDifferByWhatTheInitialValuesSay) {
   const Table table =
-      table_of("cahn_hilliard_initial_values --levels 0 --schemes interpolation,ritz,interpolation_theta");
+      table_of("cahn_hilliard_initial_values --levels 0 --initial interpolation,ritz,interpolation_theta");
   ASSERT_EQ(table.rows.size(), 3u);
   for (const Row& row : table.rows) {
     SCOPED_TRACE(row.cell);
     EXPECT_NEAR(row.values.at("largest_u0"), 1, 1e-9);
     EXPECT_LT(row.values.at("mass_drift"), 1e-11);
     EXPECT_EQ(row.more.at("snapshots").size(), 5u);
-    const std::string scheme = row.labels.at("scheme");
-    EXPECT_EQ(row.values.count("u_difference_L2_at_0"), scheme == "interpolation" ? 0u : 1u);
-    if (scheme == "interpolation") continue;
-    EXPECT_EQ(row.values.at("u_difference_L2_at_0") == 0, scheme == "interpolation_theta");
+    const std::string initial = row.labels.at("initial");
+    EXPECT_EQ(row.values.count("u_difference_L2_at_0"), initial == "interpolation" ? 0u : 1u);
+    if (initial == "interpolation") continue;
+    EXPECT_EQ(row.values.at("u_difference_L2_at_0") == 0, initial == "interpolation_theta");
     EXPECT_GT(row.values.at("w_difference_L2_at_0"), 0.01);
     EXPECT_LT(row.values.at("u_difference_L2_at_5"), 0.1);
   }
