@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "solver/analysis/run_recorder.hpp"
-#include "solver/analysis/table.hpp"
 #include "solver/flows/pfhub_sphere.hpp"
+#include "solver/tables/table.hpp"
 
 namespace esfem {
 
