@@ -26,7 +26,7 @@ BAR, BAR_HEIGHT, BAR_LABELS = 2.6, 0.11, 0.36  # inches
 def draw(table, folder):
     """Yields the figure; `folder` is the table's. TableError when no run has snapshots."""
     rows = [row for row in table["rows"]
-            if label_of(row, "scheme") in SCHEMES and label_of(row, "constant") == CONSTANT]
+            if label_of(row, "initial") in SCHEMES and label_of(row, "constant") == CONSTANT]
     runs = finest_runs(rows)
     if not runs:
         raise TableError(f"no snapshots of the schemes {' and '.join(SCHEMES)}")
@@ -40,7 +40,7 @@ def finest_runs(rows):
     found = {}
     for row in rows:
         if has_series(row) and row.get("snapshots"):
-            found.setdefault((row["nodes"], row["tau"]), {})[label_of(row, "scheme")] = row
+            found.setdefault((row["nodes"], row["tau"]), {})[label_of(row, "initial")] = row
     if not found:
         return {}
     _, _, runs = max(((len(runs), (nodes, -tau), runs) for (nodes, tau), runs in found.items()),

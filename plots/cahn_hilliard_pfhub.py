@@ -25,7 +25,6 @@ PUBLISHED = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "refe
 VIEW = view(30, 20)
 PICTURES = 7
 FIRST_TIME = 1  # of the logarithmic axis
-MOOSE_STEPS = "backward Euler, MOOSE's steps"
 # sqrt(2 kappa 5) 0.4^3 / 6 is the energy of a flat interface per length, 2 pi 100 the length of a great circle.
 GREAT_CIRCLE = np.sqrt(2 * 2 * 5) * 0.4**3 / 6 * 2 * np.pi * 100
 COLOURS = (style.SKY_BLUE, style.BLUE, style.ORANGE, style.GREEN, style.PURPLE)
@@ -38,7 +37,7 @@ def draw(table, folder):
     rows = [row for row in table["rows"] if has_series(row) and series(row, "energy")]
     if not rows:
         raise TableError("no run has the series energy")
-    rows.sort(key=lambda row: (label_of(row, "stepping") != MOOSE_STEPS, row["nodes"], -label_of(row, "tolerance", 0)))
+    rows.sort(key=lambda row: (not _has_moose_steps(row), row["nodes"], -label_of(row, "tolerance", 0)))
     strips = [(_mesh(row), Strip(evenly(Snapshots(row, folder, STEM).files, PICTURES), VIEW,
                                  style.WIDTH - LABEL - 0.62)) for row in _pictured(rows, folder)]
     yield "pfhub/fig1d", _figure(rows, strips, time_series.failure_notes(table["rows"]))
@@ -60,11 +59,14 @@ def _mesh(row):
     return f"P{label_of(row, 'degree', '')}, {style.nodes_label(row['nodes'])}"
 
 
+def _has_moose_steps(row):
+    return label_of(row, "stepping") == "moose"
+
+
 def _name(row):
-    steps, tolerance = label_of(row, "stepping", ""), label_of(row, "tolerance")
-    if tolerance:
-        steps += f", tol. {style.power_of_ten(tolerance)}"
-    return f"{_mesh(row)}, {steps}"
+    if _has_moose_steps(row):
+        return f"{_mesh(row)}, backward Euler, MOOSE's steps"
+    return f"{_mesh(row)}, BDF{label_of(row, 'bdf')}, tol. {style.power_of_ten(label_of(row, 'tolerance'))}"
 
 
 def _line_styles(rows):
@@ -72,7 +74,7 @@ def _line_styles(rows):
     colours = iter(COLOURS * len(rows))
     meshes, styles = set(), []
     for row in rows:
-        if label_of(row, "stepping") == MOOSE_STEPS:
+        if _has_moose_steps(row):
             styles.append({"color": style.VERMILLION, "linestyle": style.DASHES["short"], "linewidth": 1.4, "zorder": 3})
             continue
         mesh = _mesh(row)

@@ -16,7 +16,7 @@ TIMES = (0, 1, 2, 3, 5)
 
 
 def run_row(scheme, **changes):
-    row = {"cell": f"{scheme}_unit_h2_tau0", "labels": {"scheme": scheme, "constant": "unit"}, "level": 2, "h": 0.4,
+    row = {"cell": f"{scheme}_unit_h2_tau0", "labels": {"initial": scheme, "constant": "unit"}, "level": 2, "h": 0.4,
            "nodes": 4098, "tau": 0.0125, "steps": 400, "status": "ok", "errors": {},
            "series": {"t": [0, 5], "energy": [1, 0]},
            "snapshots": [{"t": t, "file": f"surfaces_{i:04d}.vtu"} for i, t in enumerate(TIMES)]}
@@ -77,7 +77,7 @@ class InitialValues(unittest.TestCase):
         self.assertIn("1 of 2 runs failed: lost.", texts_of(figure))
 
     def test_what_is_missing_is_named(self):
-        printed = {"scheme": "interpolation", "constant": "printed"}
+        printed = {"initial": "interpolation", "constant": "printed"}
         for row in (run_row("ritz"), run_row("interpolation", snapshots=[]), run_row("interpolation", labels=printed)):
             with self.assertRaisesRegex(TableError, "no snapshots of the schemes interpolation and ritz_theta"):
                 self.figure([row])

@@ -22,15 +22,15 @@ def torus_row(level, k, size, **labels):
 
 
 def torus_table(levels=4, exponents=6):
-    rows = [torus_row(level, k, size, run="convergence", mesh=mesh, F="extrapolated", bdf=1, theta="no")
+    rows = [torus_row(level, k, size, run="convergence", triangulation=mesh, F="extrapolated", bdf=1, theta="no")
             for mesh, size in (("isothermal", 1), ("graded", 7)) for level in range(levels) for k in range(exponents)]
-    rows.append(torus_row(0, 0, 50, run="convergence", mesh="isothermal", F="implicit", bdf=1, theta="no"))
-    rows.append(torus_row(0, 0, 60, run="convergence", mesh="isothermal", F="extrapolated", bdf=1, theta="yes"))
-    rows.append(torus_row(0, 0, 70, run="convergence", mesh="isothermal", F="extrapolated", bdf=2, theta="no"))
+    rows.append(torus_row(0, 0, 50, run="convergence", triangulation="isothermal", F="implicit", bdf=1, theta="no"))
+    rows.append(torus_row(0, 0, 60, run="convergence", triangulation="isothermal", F="extrapolated", bdf=1, theta="yes"))
+    rows.append(torus_row(0, 0, 70, run="convergence", triangulation="isothermal", F="extrapolated", bdf=2, theta="no"))
     for F in ("extrapolated", "implicit"):
         for bdf in (1, 2):
             for k in range(exponents):
-                row = torus_row(1, k, 1, run="stability", mesh="graded", F=F, bdf=bdf)
+                row = torus_row(1, k, 1, run="stability", triangulation="graded", F=F, bdf=bdf)
                 if (F == "implicit") != (bdf == 2) and k < 3:
                     row.update(status=f"failed: step {k}, t = {0.31 * (k + 1):g}: element 17 is degenerate", errors={},
                                values={}, h=0, nodes=0)

@@ -15,15 +15,15 @@ from willmore import limit_of
 
 def competitor_row(scheme, surface, degree, **changes):
     t = np.linspace(0, 1, 41)
-    size = {"kll21": 1e-4, "dziuk": 3e-3, "bgn": 1e-3}[scheme] * (1 if degree == 2 else 6)
+    size = {"willmore": 1e-4, "dziuk_willmore": 3e-3, "bgn_willmore": 1e-3}[scheme] * (1 if degree == 2 else 6)
     limit = limit_of(surface)[0]
     columns = {"t": t, "willmore_energy": limit + 5 * size * np.exp(t),
                "kappa_energy": limit + (3 * np.exp(-4 * t) if surface == "ellipsoid" else 0) + 2 * size * np.exp(t)}
     if surface != "ellipsoid":
         columns["x_nodal_H1"] = size * np.expm1(2 * t)
     nodes = 1914 if degree == 2 else 1926
-    return {"cell": f"{scheme}_{surface}_p{degree}",
-            "labels": {"scheme": scheme, "surface": surface, "degree": degree}, "level": 1, "h": 0.2, "nodes": nodes,
+    return {"cell": f"{surface}_{scheme}_p{degree}",
+            "labels": {"surface": surface, "flow": scheme, "degree": degree}, "level": 1, "h": 0.2, "nodes": nodes,
             "tau": 0.025, "steps": 40, "status": "ok", "errors": {},
             "series": {name: values.tolist() for name, values in columns.items()}, **changes}
 
@@ -31,7 +31,7 @@ def competitor_row(scheme, surface, degree, **changes):
 def competitors_table():
     rows = [competitor_row(scheme, surface, degree) for surface in willmore_competitors.SURFACES
             for scheme in willmore_competitors.SCHEMES for degree in (1, 2)
-            if (scheme, degree) != ("kll21", 1)]
+            if (scheme, degree) != ("willmore", 1)]
     return {"schema": SCHEMA, "experiment": "willmore_competitors", "paper": "kll21", "parameters": {}, "rows": rows}
 
 
@@ -58,9 +58,9 @@ class Competitors(unittest.TestCase):
         for axes in upper + lower:
             self.assertEqual((len(lines_of(axes)), axes.get_yscale(), axes.get_xlabel()), (5, "log", "$t$"))
         self.assertIn(r"Clifford torus, $W^* = 4\pi^2$", texts_of(self.figure))
-        error = competitor_row("kll21", "sphere", 2)["series"]["x_nodal_H1"]
+        error = competitor_row("willmore", "sphere", 2)["series"]["x_nodal_H1"]
         np.testing.assert_array_equal(lines_of(upper[0])[0].get_ydata(), [math.nan, *error[1:]])
-        energy = np.array(competitor_row("bgn", "ellipsoid", 1)["series"]["kappa_energy"])
+        energy = np.array(competitor_row("bgn_willmore", "ellipsoid", 1)["series"]["kappa_energy"])
         np.testing.assert_allclose(lines_of(lower[2])[-1].get_ydata(), energy - 8 * math.pi)
 
     def test_schemes_have_colours_and_degrees_have_dashes(self):
@@ -77,14 +77,14 @@ class Competitors(unittest.TestCase):
     def test_notes_say_mesh_and_step_size(self):
         notes = texts_of(self.figure)
         self.assertIn(r"Sphere: $N = 1{,}914$, $\tau = 0.025$ (quadratic);", notes)
-        coarser = [{**row, "nodes": 500} if row["cell"] == "bgn_sphere_p1" else row for row in self.table["rows"]]
+        coarser = [{**row, "nodes": 500} if row["cell"] == "sphere_bgn_willmore_p1" else row for row in self.table["rows"]]
         self.assertIn("(Dziuk, linear); $N = 500$", texts_of(draw(coarser)))
         self.assertIn("(BGN, linear).", texts_of(draw(coarser)))
         alike = [row for row in self.table["rows"] if label_of(row, "degree") == 2]
         self.assertIn(r"Ellipsoid: $N = 1{,}914$, $\tau = 0.025$.", texts_of(draw(alike)))
 
     def test_a_scheme_without_kappa_shows_its_own_energy(self):
-        row = competitor_row("dziuk", "ellipsoid", 2)
+        row = competitor_row("dziuk_willmore", "ellipsoid", 2)
         del row["series"]["kappa_energy"]
         figure = draw([row])
         axes, = figure.axes
@@ -102,11 +102,11 @@ class Competitors(unittest.TestCase):
         self.assertEqual(len(lines_of(figure.axes[0])), 4)
 
     def test_small_tables_give_what_they_have(self):
-        only_errors = competitor_row("kll21", "sphere", 2, series={"t": [0, 0.5, 1], "x_nodal_H1": [0, 1e-3, None]})
+        only_errors = competitor_row("willmore", "sphere", 2, series={"t": [0, 0.5, 1], "x_nodal_H1": [0, 1e-3, None]})
         self.assertEqual([axes.get_ylabel() for axes in draw([only_errors]).axes], ["error of $x$ in $H^1$"])
-        for row in (competitor_row("kll21", "cube", 2),
-                    competitor_row("kll21", "sphere", 2, series={"t": [0]}),
-                    competitor_row("kll21", "sphere", 2, status="failed: why")):
+        for row in (competitor_row("willmore", "cube", 2),
+                    competitor_row("willmore", "sphere", 2, series={"t": [0]}),
+                    competitor_row("willmore", "sphere", 2, status="failed: why")):
             with self.assertRaisesRegex(TableError, "no series x_nodal_H1"):
                 draw([row])
 

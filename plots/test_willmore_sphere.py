@@ -13,15 +13,20 @@ from testing import data_lines, figure_named, lines_of, run_script, slopes_of, t
 from willmore import SPHERE, TORUS, limit_of
 
 
-def convergence_row(level, k, growth, **labels):
+def labels_of(run, projection, flow="willmore", theta="no"):
+    return {"run": run, "flow": flow, "projection": projection, "theta": theta, "radius": 1.0}
+
+
+def convergence_row(level, k, growth, projection, **labels):
     """x, nu, H of order 3 in h; the energy tends to 8 pi. Without projection everything has grown by exp(8)."""
     h, tau = 0.5 * 2**(-level / 2), 0.2 * 2.0**-k
     error = growth * (3e-3 * h**3 + 1e-7 * tau)
     errors = {q: {norm: factor * c * error for norm, factor in (("nodal_H1", 1), ("lifted_H1", 1.3))}
               for q, c in (("x", 1), ("nu", 2), ("H", 7))}
-    name = "_".join(map(str, labels.values()))
+    name = "_".join(["convergence", projection, *labels.values()])
     return {"cell": f"{name}_h{level}_tau{k}", "level": level, "h": h, "nodes": round(482 * 2**level), "tau": tau,
-            "steps": 5 * 2**k, "status": "ok", "errors": errors, "labels": labels,
+            "steps": 5 * 2**k, "status": "ok", "errors": errors,
+            "labels": labels_of("convergence", projection, **labels),
             "values": {"willmore_energy": SPHERE[0] * (1 + 0.3 * error), "kappa_energy": SPHERE[0] * (1 - 0.1 * h**4)}}
 
 
@@ -30,15 +35,17 @@ def normals_row(projection, growth, end=1.0):
     drift = growth * 1e-5 * np.expm1(8 * t)
     columns = {"t": t, "min_nu": 1 - drift, "max_nu": 1 + 1.2 * drift, "min_radius": 1 - 0.6 * drift,
                "max_radius": 1 + 0.5 * drift, "willmore_energy": SPHERE[0] * (1 + drift**2 + 0.02 * growth * drift)}
-    return {"cell": f"normals_{projection}", "labels": {"run": "normals", "projection": projection}, "level": 2,
-            "h": 0.25, "nodes": 1914, "tau": 0.025, "steps": 40, "status": "ok", "errors": {}, "values": {},
+    return {"cell": f"normals_{projection}", "labels": labels_of("normals", projection), "level": 2, "h": 0.25,
+            "nodes": 1914, "tau": 0.025, "steps": 40, "status": "ok", "errors": {}, "values": {},
             "series": {name: values.tolist() for name, values in columns.items()}}
 
 
 def sphere_table(levels=5, exponents=6):
-    rows = [convergence_row(level, k, growth, run="convergence", projection=projection)
+    rows = [convergence_row(level, k, growth, projection)
             for projection, growth in (("none", math.exp(5)), ("projected", 1))
             for level in range(levels) for k in range(exponents)]
+    rows += [convergence_row(0, 0, 1e9, "none", flow="surface_diffusion"),  # of no figure
+             convergence_row(0, 0, 1e9, "projected", theta="yes")]
     rows += [normals_row("none", 5), normals_row("projected", 0.01)]
     return {"schema": SCHEMA, "experiment": "willmore_sphere", "paper": "kll21", "parameters": {}, "rows": rows}
 
@@ -76,7 +83,7 @@ class WillmoreSphere(unittest.TestCase):
     def test_rows_go_to_the_figure_of_their_projection(self):
         for name, projection in (("kll21/fig7_1", "none"), ("kll21/fig7_3", "projected")):
             expected = max(row["errors"]["x"]["nodal_H1"] for row in self.table["rows"]
-                           if row["labels"] == {"run": "convergence", "projection": projection})
+                           if row["labels"] == labels_of("convergence", projection))
             shown = max(line.get_ydata().max() for line in data_lines(self.figures[name].axes[0]))
             self.assertEqual(shown, expected)
 

@@ -32,7 +32,7 @@ def draw(table, norm):
     """Yields (name, figure) for what the table has. TableError when it has none of these runs."""
     rows = table["rows"]
     paper = [row for row in rows if all(label_of(row, key, value) == value for key, value in PAPER.items())]
-    paper = {mesh: [row for row in paper if label_of(row, "mesh") == mesh] for mesh in FIGURES}
+    paper = {mesh: [row for row in paper if label_of(row, "triangulation") == mesh] for mesh in FIGURES}
     stability = [row for row in rows if label_of(row, "run") == "stability"]
     if not any(paper.values()) and not stability:
         raise TableError('no rows with run "convergence" (BDF1, F "extrapolated", no theta) or "stability"')
@@ -46,7 +46,7 @@ def draw(table, norm):
 def stability_figure(rows, norm):
     """A table for each mesh: a line for each variant, a column for each step size; the error of x where a run finished.
 
-    A run that failed may not know its mesh: its label `level` or `mesh` says which one it is.
+    A run that failed may not know its mesh: its level or its label `triangulation` says which one it is.
     """
     tables = _meshes(rows)
     taus = sorted({_rounded(row["tau"]) for row in rows if _is_positive(row.get("tau"))}, reverse=True)
@@ -106,7 +106,7 @@ def _meshes(rows):
     """{heading: rows} of one mesh each, coarse to fine."""
     groups = {}
     for row in rows:
-        groups.setdefault((row.get("level", 0), label_of(row, "mesh", "")), []).append(row)
+        groups.setdefault((row.get("level", 0), label_of(row, "triangulation", "")), []).append(row)
     tables = {}
     for (level, mesh), group in sorted(groups.items()):
         nodes = [row["nodes"] for row in group if succeeded(row)]

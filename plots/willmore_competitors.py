@@ -17,7 +17,8 @@ from willmore import finest, from_limit, limit_of
 
 ERROR = "x_nodal_H1"
 SURFACES = {"sphere": "sphere", "clifford_torus": "Clifford torus", "ellipsoid": "ellipsoid"}
-SCHEMES = {"kll21": ("KLL", style.BLUE), "dziuk": ("Dziuk", style.VERMILLION), "bgn": ("BGN", style.PURPLE)}
+SCHEMES = {"willmore": ("KLL", style.BLUE), "dziuk_willmore": ("Dziuk", style.VERMILLION),
+           "bgn_willmore": ("BGN", style.PURPLE)}
 DEGREES = {2: ("quadratic", style.DASHES["solid"]), 1: ("linear", style.DASHES["dashed"])}
 # The energy of the discrete surface is the same functional for all schemes; W(H_h) is of a scheme's own H_h.
 ENERGIES = ("kappa_energy", "willmore_energy")
@@ -25,11 +26,11 @@ ENERGIES = ("kappa_energy", "willmore_energy")
 
 def draw(table, folder):
     """Yields (name, figure). TableError when there is nothing to show; `folder` is not needed."""
-    rows = [row for row in table["rows"] if label_of(row, "scheme") in SCHEMES
+    rows = [row for row in table["rows"] if label_of(row, "flow") in SCHEMES
             and label_of(row, "surface") in SURFACES and label_of(row, "degree") in DEGREES]
     runs = {}
     for row in filter(has_series, rows):
-        runs.setdefault(tuple(label_of(row, name) for name in ("surface", "scheme", "degree")), []).append(row)
+        runs.setdefault(tuple(label_of(row, name) for name in ("surface", "flow", "degree")), []).append(row)
     runs = {key: finest(runs[key]) for key in sorted(runs, key=_order)}
     errors = {surface: _of(runs, surface, ERROR) for surface in SURFACES}
     energies = {surface: _of(runs, surface, *ENERGIES) for surface in SURFACES}

@@ -16,6 +16,7 @@ from table import TableError, has_series, label_of, series
 from willmore import SPHERE, errors_and_energy
 
 NORM = "nodal_H1"  # what the authors plot
+PAPER = {"flow": "willmore", "theta": "no"}
 # Black without, grey with projections, circles for the minimum and stars for the maximum, as in the paper.
 PROJECTIONS = {"none": ("without projections", {"color": "black", "zorder": 2.2}),
                "projected": ("with projections", {"color": "0.6", "linewidth": 1.3})}
@@ -25,8 +26,8 @@ PAIRS = {"nu": r"$\min\,|\nu_h|$ and $\max\,|\nu_h|$", "radius": "min and max di
 
 def draw(table, norm):
     """Yields (name, figure) for what the table has. TableError when it has none of these runs."""
-    rows, degree = table["rows"], table.get("parameters", {}).get("degree", 2)
-    nothing = True
+    rows = [row for row in table["rows"] if all(label_of(row, key, value) == value for key, value in PAPER.items())]
+    degree, nothing = table.get("parameters", {}).get("degree", 2), True
     for name, projection in (("kll21/fig7_1", "none"), ("kll21/fig7_3", "projected")):
         chosen = [row for row in rows if label_of(row, "run") == "convergence" and label_of(row, "projection") == projection]
         if chosen:
