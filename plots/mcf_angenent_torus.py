@@ -3,7 +3,7 @@
 
 Usage: python3 plots/mcf_angenent_torus.py results/paper/mcf_angenent_torus.json figures
 Writes figures/gallery/mcf_angenent_torus.{pdf,png}, errors against the exact solution for the smallest step size of
-each scheme, degree and kind of mesh, and mcf_angenent_torus_time.{pdf,png}: (5.1) by BDF 1 to 5 against the same
+each scheme, degree and triangulation, and mcf_angenent_torus_time.{pdf,png}: (5.1) by BDF 1 to 5 against the same
 discretisation with small steps, always in the nodal counterpart of the norm. Each is left out where the table has none
 of its runs ("convergence", "order").
 """
@@ -15,7 +15,7 @@ from table import TableError, label_of, succeeded
 QUANTITIES = ("x", "v", "nu", "H")
 NORM = "lifted_H1"  # of the exact surface: where the theory's orders show
 FLOWS = {"mean_curvature": "(5.1)", "dziuk": "Dziuk"}
-MESHES = {"grid": "", "unstructured": " unstructured"}
+TRIANGULATIONS = {"grid": "", "unstructured": " unstructured"}
 
 
 def draw(table, norm):
@@ -32,11 +32,11 @@ def draw(table, norm):
 
 
 def _variant(row):
-    return tuple(label_of(row, name) for name in ("flow", "degree", "mesh"))
+    return tuple(label_of(row, name) for name in ("flow", "degree", "triangulation"))
 
 
 def drawn_rows(rows):
-    """Of each scheme, degree and kind of mesh the BDF method with the most meshes, with its smallest step size."""
+    """Of each scheme, degree and triangulation the BDF method with the most meshes, with its smallest step size."""
     chosen = []
     good = [row for row in rows if succeeded(row)]
     for variant in dict.fromkeys(map(_variant, good)):
@@ -52,10 +52,10 @@ def drawn_rows(rows):
 
 def _label(row):
     """What makes a line, with a number that orders the lines: first those of (5.1)."""
-    flow, degree, mesh = _variant(row)
-    place = list(FLOWS).index(flow), degree, mesh != "grid"
+    flow, degree, triangulation = _variant(row)
+    place = list(FLOWS).index(flow), degree, triangulation != "grid"
     return -(place[0] * 100 + place[1] * 10 + place[2]), (
-        f"{FLOWS[flow]} $P_{degree}${MESHES.get(mesh, f' {mesh}')}")
+        f"{FLOWS[flow]} $P_{degree}${TRIANGULATIONS.get(triangulation, f' {triangulation}')}")
 
 
 def space_figure(rows, norm):

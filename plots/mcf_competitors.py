@@ -16,7 +16,7 @@ from table import TableError, label_of, succeeded
 
 NORM = "nodal_L2"
 SURFACES = {"sphere": "sphere", "angenent_torus": "self-shrinking torus"}
-SCHEMES = {"kll19": ("(5.1)", style.BLUE), "dziuk": ("Dziuk", style.VERMILLION), "bgn": ("BGN", style.PURPLE)}
+FLOWS = {"mean_curvature": ("(5.1)", style.BLUE), "dziuk": ("Dziuk", style.VERMILLION), "bgn": ("BGN", style.PURPLE)}
 # One look for each BDF method, and one for linear elements.
 LOOKS = {(2, 3): ("-", "o"), (2, 2): (style.DASHES["dashed"], "s"), (2, 1): (style.DASHES["dotted"], "^"),
          (1, 1): (style.DASHES["dash-dot"], "v")}
@@ -26,7 +26,7 @@ SECONDS = "seconds_of_steps"
 def draw(table, norm):
     """Yields (name, figure). TableError when there is nothing to show."""
     rows = [row for row in table["rows"]
-            if label_of(row, "scheme") in SCHEMES and label_of(row, "surface") in SURFACES]
+            if label_of(row, "flow") in FLOWS and label_of(row, "surface") in SURFACES]
     points = {surface: {} for surface in SURFACES}
     for row in filter(succeeded, rows):
         point = _point(row, norm)
@@ -39,7 +39,7 @@ def draw(table, norm):
 
 
 def _variant(row):
-    return tuple(label_of(row, name) for name in ("scheme", "degree", "bdf"))
+    return tuple(label_of(row, name) for name in ("flow", "degree", "bdf"))
 
 
 def _point(row, norm):
@@ -50,18 +50,18 @@ def _point(row, norm):
 
 
 def _order(variant):
-    return list(SCHEMES).index(variant[0]), list(LOOKS).index(variant[1:])
+    return list(FLOWS).index(variant[0]), list(LOOKS).index(variant[1:])
 
 
 def _look(variant):
     dash, marker = LOOKS[variant[1:]]
-    return {"color": SCHEMES[variant[0]][1], "linestyle": dash, "marker": marker, "markersize": 3.6,
+    return {"color": FLOWS[variant[0]][1], "linestyle": dash, "marker": marker, "markersize": 3.6,
             "markerfacecolor": "white", "markeredgewidth": 0.8, "linewidth": 0.9}
 
 
 def _label(variant):
-    scheme, degree, bdf = variant
-    return f"{SCHEMES[scheme][0]}, $P_{degree}$, BDF{bdf}"
+    flow, degree, bdf = variant
+    return f"{FLOWS[flow][0]}, $P_{degree}$, BDF{bdf}"
 
 
 def frontier(points):

@@ -46,6 +46,15 @@ REFERENCE_LINE = {"color": "black", "linewidth": 0.7}
 STARTS = {"cascade": "first step by backward Euler", "exact": "exact starting values"}
 
 
+def method_of(row):
+    """The name in LABELS of the method of a run: a flow, with its variant or degree."""
+    flow = label_of(row, "flow")
+    if flow == "mean_curvature":
+        variant = label_of(row, "variant")
+        return "kll" if variant == "plain" else f"kll_{variant}"
+    return "bgn_p1" if flow == "bgn" and label_of(row, "degree") == 1 else flow
+
+
 @dataclass
 class Setting:
     """Runs of different methods with the same mesh, step size and starting procedure."""
@@ -94,16 +103,17 @@ def _same(a, b):
 
 
 def _finest(rows, start):
-    found = [row for row in rows
-             if has_series(row) and label_of(row, "method") in LABELS and label_of(row, "start", "").startswith(start)]
+    """Without BGN's scheme: it has one step, and its start says nothing."""
+    found = [row for row in rows if has_series(row) and method_of(row) in LABELS and label_of(row, "flow") != "bgn"
+             and label_of(row, "start", "").startswith(start)]
     return [row for row in found if row.get("level", 0) == max(other.get("level", 0) for other in found)]
 
 
 def _setting(rows, candidates, tau, bgn_tau):
     """The candidates with step size tau, and the runs of BGN at that level whose step size is closest to bgn_tau."""
-    runs = {label_of(row, "method"): row for row in candidates if _same(row["tau"], tau)}
+    runs = {method_of(row): row for row in candidates if _same(row["tau"], tau)}
     for method in ("bgn", "bgn_p1"):
-        others = [row for row in rows if has_series(row) and label_of(row, "method") == method
+        others = [row for row in rows if has_series(row) and method_of(row) == method
                   and row.get("level", 0) == candidates[0].get("level", 0)]
         if others and method not in runs:
             runs[method] = min(others, key=lambda row: abs(row["tau"] - bgn_tau))

@@ -54,7 +54,7 @@ def _what(claim):
         what += ", " + norm.replace("H1", "H<sup>1</sup>").replace("L2", "L<sup>2</sup>")
     if "variable" in claim:
         what = f"order in {text(claim['variable'])}: {what}"
-    labels = ", ".join(str(value) if name in ("flow", "run", "method", "surface", "scheme") else f"{name} {value}"
+    labels = ", ".join(str(value) if name in ("flow", "run", "variant", "surface", "scheme") else f"{name} {value}"
                        for name, value in claim["where"].items())
     return what + (tag("div", text(labels.replace("_", " ")), class_="place") if labels else "")
 

@@ -10,16 +10,17 @@ from table import SCHEMA, TableError, label_of
 from testing import data_lines, figure_named, run_script, slopes_of, texts_of
 
 
-def torus_row(run, flow, degree, bdf, level, k, mesh="grid"):
+def torus_row(run, flow, degree, bdf, level, k, triangulation="grid"):
     h, tau = 1.03 * 2**(-level / 2), 0.02 * 2.0**-k
     space = 0 if run == "order" else (1 if flow == "mean_curvature" else 5) * 0.1 * h**degree
     errors = {q: {f"{kind}_{norm}": factor * (10 * tau**bdf + space * h**more) for kind in ("nodal", "lifted")
                   for norm, more in (("L2", 1), ("H1", 0))} for q, factor in (("x", 1), ("v", 5), ("nu", 2), ("H", 3))}
     if run == "order":
         errors = {q: {norm: e for norm, e in of.items() if norm.startswith("nodal")} for q, of in errors.items()}
-    return {"cell": f"{run}_{flow}_{mesh}_p{degree}_bdf{bdf}_h{level}_tau{k}",
-            "labels": {"run": run, "flow": flow, "mesh": mesh, "degree": degree, "bdf": bdf}, "level": level, "h": h,
-            "nodes": round(288 * degree**2 * 2**level), "tau": tau, "steps": 10 * 2**k, "status": "ok", "errors": errors}
+    return {"cell": f"{run}_{flow}_{triangulation}_p{degree}_bdf{bdf}_h{level}_tau{k}",
+            "labels": {"run": run, "flow": flow, "triangulation": triangulation, "degree": degree, "bdf": bdf},
+            "level": level, "h": h, "nodes": round(288 * degree**2 * 2**level), "tau": tau, "steps": 10 * 2**k,
+            "status": "ok", "errors": errors}
 
 
 def torus_table():

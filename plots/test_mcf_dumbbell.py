@@ -14,14 +14,21 @@ from table import SCHEMA, TableError, label_of
 from testing import lines_of, run_script, sphere
 
 
+METHODS = {"dziuk": ("dziuk", "plain", 2), "kll": ("mean_curvature", "plain", 2), "bgn": ("bgn", "plain", 2),
+           "bgn_p1": ("bgn", "plain", 1), "euler": ("euler", "plain", 2),
+           **{f"kll_{variant}": ("mean_curvature", variant, 2)
+              for variant in ("normalised", "interpolated", "alpha1", "alpha10", "alpha100")}}
+
+
 def dumbbell_row(method, start="cascade", tau=0.003, level=1, end=0.078, **changes):
     t = np.arange(0, end + tau / 2, tau)
     columns = {"t": t, "max_H": 6 / (1.1 - t / end), "worst_angle": 36 - 300 * t, "neck_radius": 0.2 * (1.05 - t / end)}
     if method.startswith("kll"):
         columns.update(min_nu=1 - t, max_nu=1 + 20 * t)
-    cell = f"{method}_h{level}_{start.replace(':', '')}_{tau:g}"
-    row = {"cell": cell, "labels": {"method": method, "start": start}, "level": level, "h": 0.18 / 2**level,
-           "nodes": 3002 if level == 0 else 10522, "tau": tau, "steps": len(t) - 1, "errors": {},
+    flow, variant, degree = METHODS[method]
+    cell = f"{flow}_{variant}_p{degree}_{start.replace(':', '')}_h{level}_{tau:g}"
+    row = {"cell": cell, "labels": {"flow": flow, "variant": variant, "degree": degree, "start": start}, "level": level,
+           "h": 0.18 / 2**level, "nodes": 3002 if level == 0 else 10522, "tau": tau, "steps": len(t) - 1, "errors": {},
            "status": f"singular at t = {end:g} (step {len(t)}): why", "values": {"pinch_time": end},
            "series": {name: values.tolist() for name, values in columns.items()},
            "snapshots": [{"t": t[n], "file": f"surfaces_{n:04d}.vtu"} for n in range(0, len(t), 2)]}
@@ -34,8 +41,8 @@ def dumbbell_table():
     rows += [dumbbell_row(method, level=0) for method in methods[:3]]
     rows += [dumbbell_row(method, "substeps:16", tau) for method in methods[:3] for tau in (0.003, 0.0015)]
     rows.append(dumbbell_row("kll", "substeps:16", 0.00075))
-    rows += [dumbbell_row("bgn", "none", tau, level) for tau in (0.003, 0.0015) for level in (0, 1)]
-    rows.append(dumbbell_row("bgn_p1", "none", status="failed: why", series={}, snapshots=[], h=0))
+    rows += [dumbbell_row("bgn", "cascade", tau, level) for tau in (0.003, 0.0015) for level in (0, 1)]
+    rows.append(dumbbell_row("bgn_p1", "cascade", status="failed: why", series={}, snapshots=[], h=0))
     return {"schema": SCHEMA, "experiment": "mcf_dumbbell", "paper": "kll19", "parameters": {}, "rows": rows}
 
 
@@ -68,11 +75,16 @@ class Dumbbell(unittest.TestCase):
         self.assertEqual(list(paper.runs), [*mcf_dumbbell.LABELS][:7])
         self.assertEqual(list(good.runs), ["dziuk", "kll", "kll_normalised", "bgn"])
         self.assertEqual((paper.runs["bgn"]["tau"], good.runs["bgn"]["tau"]), (0.003, 0.0015))
-        finer = [*rows, dumbbell_row("bgn", "none", 0.000375)]
+        finer = [*rows, dumbbell_row("bgn", "cascade", 0.000375)]
         self.assertEqual(mcf_dumbbell.good_setting(finer).runs["bgn"]["tau"], 0.000375)
         self.assertTrue(all(row["level"] == 1 for setting in (paper, good) for row in setting.runs.values()))
         self.assertIsNone(mcf_dumbbell.good_setting([row for row in rows if label_of(row, "start") == "cascade"]))
         self.assertIsNone(mcf_dumbbell.paper_setting([{**row, "status": "failed: why"} for row in rows]))
+
+    def test_methods_have_names(self):
+        for method in METHODS:
+            self.assertEqual(mcf_dumbbell.method_of(dumbbell_row(method)), method)
+        self.assertEqual(set(METHODS) - {"euler"}, set(mcf_dumbbell.LABELS))
 
     def test_headings_say_mesh_step_and_start(self):
         good = mcf_dumbbell.good_setting(self.table["rows"])
@@ -86,11 +98,12 @@ class Dumbbell(unittest.TestCase):
     def test_snapshots_are_those_within_half_a_step(self):
         snapshots = Snapshots(dumbbell_row("kll"), "results", "mcf_dumbbell")
         self.assertEqual([t for t, _ in snapshots.files][:2], [0, 0.006])
-        self.assertEqual(snapshots.at(0.03)[1], "results/cells/mcf_dumbbell/kll_h1_cascade_0.003/surfaces_0010.vtu")
+        self.assertEqual(snapshots.at(0.03)[1], "results/cells/mcf_dumbbell/mean_curvature_plain_p2_cascade_h1_0.003/"
+                                                "surfaces_0010.vtu")
         self.assertIsNone(snapshots.at(0.032))
         self.assertAlmostEqual(snapshots.last()[0], 0.078)
         for entries in ([{"t": 0}], ["a.vtu"], [{"t": None, "file": "a.vtu"}], [{"t": 0, "file": 3}]):
-            with self.assertRaisesRegex(TableError, "kll_h1_cascade_0.003: snapshots"):
+            with self.assertRaisesRegex(TableError, "mean_curvature_plain_p2_cascade_h1_0.003: snapshots"):
                 Snapshots(dumbbell_row("kll", snapshots=entries), "results", "mcf_dumbbell")
 
     def test_all_figures_are_there(self):
@@ -145,15 +158,15 @@ class Dumbbell(unittest.TestCase):
 
     def test_failed_runs_are_counted(self):
         notes = [text.get_text() for text in self.figures["kll19/fig13_5"].texts]
-        self.assertIn("1 of 21 runs failed: bgn_p1_h1_none_0.003.", notes)
+        self.assertIn("1 of 21 runs failed: bgn_plain_p1_cascade_h1_0.003.", notes)
 
     def test_a_missing_snapshot_is_named(self):
         row = dumbbell_row("dziuk", snapshots=[{"t": 0, "file": "gone.vtu"}])
-        with self.assertRaisesRegex(TableError, "cells/mcf_dumbbell/dziuk_h1_cascade_0.003/gone.vtu: no such"):
+        with self.assertRaisesRegex(TableError, "cells/mcf_dumbbell/dziuk_plain_p2_cascade_h1_0.003/gone.vtu: no such"):
             list(mcf_dumbbell.draw({"rows": [row]}, self.folder))
 
     def test_small_tables_give_what_they_have(self):
-        rows = [dumbbell_row("dziuk", level=0), dumbbell_row("bgn", "none", level=0, snapshots=[])]
+        rows = [dumbbell_row("dziuk", level=0), dumbbell_row("bgn", "cascade", level=0, snapshots=[])]
         self.assertEqual(list(dict(mcf_dumbbell.draw({"rows": rows}, self.folder))), ["kll19/fig13_3", "kll19/fig13_5"])
         rows = [dumbbell_row("kll", "substeps:4", 0.006, 0, end=0.03, snapshots=[], status="ok")]
         figures = dict(mcf_dumbbell.draw({"rows": rows}, self.folder))
@@ -165,7 +178,7 @@ class Dumbbell(unittest.TestCase):
         rows = [dumbbell_row("kll", series={}, snapshots=[])]
         with self.assertRaisesRegex(TableError, "no series"):
             list(mcf_dumbbell.draw({"rows": rows}, self.folder))
-        for rows in ([dumbbell_row("bgn", "none")], [dumbbell_row("euler")]):
+        for rows in ([dumbbell_row("bgn", "cascade")], [dumbbell_row("euler")]):
             with self.assertRaisesRegex(TableError, "no runs"):
                 list(mcf_dumbbell.draw({"rows": rows}, self.folder))
 
