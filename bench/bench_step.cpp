@@ -29,12 +29,12 @@
 #include "bench/naive_step.hpp"
 #include "solver/assembly/surface_space.hpp"
 #include "solver/constants.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/flows/willmore_terms.hpp"
 #include "solver/linalg/spd_solver.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
 
 namespace {
 

@@ -38,6 +38,7 @@
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace {
 

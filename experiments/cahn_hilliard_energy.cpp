@@ -26,8 +26,8 @@
 #include "solver/analysis/energy_series.hpp"
 #include "solver/constants.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
 
 namespace {
 

@@ -32,8 +32,8 @@
 #include "experiments/harness/initial_concentration.hpp"
 #include "solver/analysis/energy_series.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
-#include "solver/flows/ritz_map.hpp"
+#include "solver/geometry/ritz_map.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
 
 namespace {
 

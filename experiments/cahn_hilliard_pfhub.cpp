@@ -11,9 +11,9 @@
 //               plots/cahn_hilliard_pfhub.py draws figures/pfhub/fig1d, and c on the sphere as
 //               results/paper/cells/cahn_hilliard_pfhub/CELL/surfaces.pvd
 //
-// Cahn-Hilliard equation on a sphere of radius 100 at rest (solver/flows/pfhub_sphere.hpp), from waves around
-// c = 0.5 until it is steady, with g linearised in each step (solver/flows/linearised_cahn_hilliard.hpp).
-// Stepping:
+// Cahn-Hilliard equation on a sphere of radius 100 at rest (solver/problems/pfhub_sphere.hpp), from waves
+// around c = 0.5 until it is steady, with g linearised in each step
+// (solver/flows/linearised_cahn_hilliard.hpp). Stepping:
 //   adaptive  BDF2, steps from 0.01 on that follow c, as far as t = 1.5e5
 //   moose     backward Euler with Newton's method and the steps of the published run until its third time:
 //             1, 1.1, .., 1.1^4, and then 15 of 1.1^5. Its times tell them: 6.1051 = 1 + .. + 1.1^4, and

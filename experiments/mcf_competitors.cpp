@@ -30,6 +30,7 @@
 #include "solver/analysis/errors.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/profile_grid.hpp"
+#include "solver/problems/exact_evolution.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
 
 namespace {

@@ -17,7 +17,7 @@
 // (5.1) with normalised nu_h, (5.1) with the stabilising term of §14, (5.1) with v_h by interpolation, and
 // the scheme of Barrett, Garcke and Nürnberg (2008). The paper's setting is about 10,522 nodes, BDF2 started
 // by one backward Euler step, tau = 0.003; a good start by substeps and smaller tau show what is due to the
-// method itself. A run ends by itself at the singularity (flows/regularity.hpp).
+// method itself. A run ends by itself at the singularity (geometry/regularity.hpp).
 //
 // Expected: all methods pinch at T* as tau and h go to 0; no orders are measured here.
 #include <algorithm>

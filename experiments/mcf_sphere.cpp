@@ -29,6 +29,7 @@
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/exact_states.hpp"
 
 namespace {
 

@@ -10,13 +10,13 @@
 //               results/paper/cells/tumour_growth/CELL/surfaces.pvd
 //
 // Schnakenberg's kinetics of an activator u_1 and a substrate u_2 on the unit sphere, which grows where there
-// is activator (solver/flows/tumour_growth.hpp): nick18 (2.7)-(2.9) for two species, discretised by
+// is activator (solver/problems/tumour_growth.hpp): nick18 (2.7)-(2.9) for two species, discretised by
 // (2.19)-(2.21) with quadratic elements and BDF2. It starts from the steady state without space, disturbed by
 // at most 1%, by the same function of space on every mesh.
 //
 // Expected: the steady state is unstable (Turing), a pattern appears, and the sphere loses its shape. No
 // orders.
-#include "solver/flows/tumour_growth.hpp"
+#include "solver/problems/tumour_growth.hpp"
 
 #include <cmath>
 

@@ -28,6 +28,7 @@
 #include "experiments/harness/stationary_willmore.hpp"
 #include "solver/constants.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace {
 

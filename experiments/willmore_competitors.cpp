@@ -32,9 +32,9 @@
 #include "solver/constants.hpp"
 #include "solver/flows/bgn_willmore_flow.hpp"
 #include "solver/flows/dziuk_willmore_flow.hpp"
-#include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace {
 

@@ -30,6 +30,7 @@
 #include "solver/analysis/series.hpp"
 #include "solver/constants.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace {
 

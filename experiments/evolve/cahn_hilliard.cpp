@@ -4,8 +4,9 @@
 #include "experiments/evolve/start.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/error.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/flows/phase_separation.hpp"
+#include "solver/problems/disturbed_mixture.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
 
 namespace esfem {
 namespace {

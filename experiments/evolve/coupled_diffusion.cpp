@@ -5,8 +5,9 @@
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/evolve/start.hpp"
 #include "solver/error.hpp"
-#include "solver/flows/growing_sphere.hpp"
-#include "solver/flows/tumour_growth.hpp"
+#include "solver/problems/exact_evolution.hpp"
+#include "solver/problems/growing_sphere.hpp"
+#include "solver/problems/tumour_growth.hpp"
 
 namespace esfem {
 namespace {

@@ -3,6 +3,7 @@
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/flows/dziuk_flow.hpp"
+#include "solver/problems/exact_states.hpp"
 
 namespace esfem {
 namespace {

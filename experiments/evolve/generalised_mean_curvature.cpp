@@ -2,7 +2,8 @@
 #include "experiments/evolve/advice.hpp"
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/evolve/start.hpp"
-#include "solver/flows/power_law_sphere.hpp"
+#include "solver/problems/exact_states.hpp"
+#include "solver/problems/power_law_sphere.hpp"
 
 namespace esfem {
 namespace {

@@ -2,6 +2,7 @@
 #include "experiments/evolve/advice.hpp"
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/evolve/start.hpp"
+#include "solver/problems/exact_states.hpp"
 
 namespace esfem {
 namespace {

@@ -10,6 +10,7 @@
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/error.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

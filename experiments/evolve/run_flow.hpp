@@ -11,10 +11,10 @@
 #include "experiments/evolve/config.hpp"
 #include "experiments/evolve/entry.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
-#include "solver/flows/regularity.hpp"
 #include "solver/flows/willmore_flow.hpp"
+#include "solver/geometry/regularity.hpp"
+#include "solver/problems/exact_evolution.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem {

@@ -13,10 +13,11 @@
 #include "solver/error.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/flows/dziuk_flow.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
+#include "solver/problems/exact_states.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
 
 namespace esfem {

@@ -5,7 +5,8 @@
 #include <array>
 
 #include "experiments/harness/last_state.hpp"
-#include "solver/flows/growing_sphere.hpp"
+#include "solver/problems/exact_evolution.hpp"
+#include "solver/problems/growing_sphere.hpp"
 
 namespace esfem {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-#include "solver/flows/ritz_map.hpp"
+#include "solver/geometry/ritz_map.hpp"
 #include "solver/mesh/mesh.hpp"
 #include "solver/surfaces/surface.hpp"
 

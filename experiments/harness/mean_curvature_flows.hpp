@@ -7,6 +7,7 @@
 #include "solver/flows/bgn_flow.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/problems/exact_states.hpp"
 
 namespace esfem {
 

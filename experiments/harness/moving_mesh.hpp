@@ -9,8 +9,9 @@
 #include <utility>
 
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/analysis/run_recorder.hpp"
-#include "solver/flows/pfhub_sphere.hpp"
+#include "solver/problems/pfhub_sphere.hpp"
 #include "solver/tables/table.hpp"
 
 namespace esfem {

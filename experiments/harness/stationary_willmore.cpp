@@ -7,8 +7,9 @@
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/error.hpp"
-#include "solver/flows/discrete_curvature.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/linalg/spd_solver.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

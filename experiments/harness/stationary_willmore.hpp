@@ -4,9 +4,9 @@
 
 #include <functional>
 
-#include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/problems/exact_evolution.hpp"
 #include "solver/tables/table.hpp"
 #include "solver/time/integrate.hpp"
 

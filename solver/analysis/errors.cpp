@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "solver/assembly/lifted_points.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

@@ -8,7 +8,7 @@
 
 #include "solver/analysis/quantities.hpp"
 #include "solver/assembly/surface_space.hpp"
-#include "solver/flows/exact_evolution.hpp"
+#include "solver/problems/exact_evolution.hpp"
 #include "solver/tables/table.hpp"
 
 namespace esfem {

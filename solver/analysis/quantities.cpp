@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solver/error.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "solver/flows/discrete_curvature.hpp"
-#include "solver/flows/exact_evolution.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/nodal_field.hpp"
+#include "solver/problems/exact_evolution.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {

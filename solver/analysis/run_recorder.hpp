@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/analysis/diagnostics.hpp"
-#include "solver/flows/discrete_curvature.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/mesh/snapshot_collection.hpp"
 #include "solver/time/checkpoint.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/bgn_flow.hpp"
 
-#include "solver/flows/discrete_curvature.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 
 namespace esfem {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "solver/flows/bgn_system.hpp"
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/regularity.hpp"
 #include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
 

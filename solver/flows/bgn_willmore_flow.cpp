@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/bgn_willmore_flow.hpp"
 
-#include "solver/flows/discrete_curvature.hpp"
-#include "solver/flows/l2_project.hpp"
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
+#include "solver/geometry/l2_project.hpp"
+#include "solver/geometry/regularity.hpp"
 
 namespace esfem {
 

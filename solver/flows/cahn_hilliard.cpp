@@ -4,9 +4,8 @@
 #include <cmath>
 
 #include "solver/error.hpp"
-#include "solver/flows/l2_project.hpp"
-#include "solver/flows/plane_waves.hpp"
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/l2_project.hpp"
+#include "solver/geometry/regularity.hpp"
 
 namespace esfem {
 
@@ -84,18 +83,6 @@ Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u,
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
   return l2_project(M, epsilon * (A * u) + load_of_g / epsilon);
-}
-
-CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,
-                                    double disturbance, unsigned seed, const Vec3& origin) {
-  std::mt19937 engine(seed);
-  const Field waves = plane_waves(x, origin, space.length(), engine);
-  SymmetricMatrix M = space.matrix(), A = space.matrix();
-  space.assemble(x, M, A);
-  const Field M_one = M * Field::Ones(x.rows(), 1);
-  const double mean_of_waves = waves.cwiseProduct(M_one).sum() / M_one.sum();
-  const Field u = mean + disturbance * (waves.array() - mean_of_waves);
-  return cahn_hilliard_start(space, DoubleWell(), epsilon, 0, x, u);
 }
 
 double ginzburg_landau_energy(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon) {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "solver/assembly/surface_space.hpp"
-#include "solver/flows/prescribed_motion.hpp"
+#include "solver/geometry/prescribed_motion.hpp"
 #include "solver/linalg/block_solver.hpp"
 #include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
@@ -145,12 +145,6 @@ struct DoubleWell {
   Pack dg(double, const PointData<1>& p) const { return 3.0 * p.u[0] * p.u[0] - 1.0; }
   void b(double, const Field&, Field&) const {}
 };
-
-/// A disturbed mixture on nodes x, u = mean + disturbance times plane waves (in units of the space's length
-/// from `origin`) less their mean over Gamma_h[x], so that int u is `mean` times the area, and w from the
-/// second equation; t = 0.
-CahnHilliardState disturbed_mixture(const SurfaceSpace& space, const Field& x, double epsilon, double mean,
-                                    double disturbance, unsigned seed, const Vec3& origin = Vec3::Zero());
 
 /// Ginzburg-Landau energy, integral of epsilon/2 |grad u|² + F(u)/epsilon over Gamma_h[x] (bk22 (2.3) with
 /// epsilon).

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/regularity.hpp"
 #include "solver/linalg/spd_solver.hpp"
 #include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"

@@ -2,7 +2,7 @@
 #include "solver/flows/dziuk_flow.hpp"
 
 #include "solver/error.hpp"
-#include "solver/flows/discrete_curvature.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 
 namespace esfem {
 
@@ -35,11 +35,6 @@ DziukFlow::State dziuk_state_on(const SurfaceSpace& space, const Field& x) {
   DiscreteCurvature curvature(space);
   curvature.compute(x);
   return {0, x, -curvature.kappa()};
-}
-
-DziukFlow::State exact_dziuk_state(const ExactEvolution& exact, const Field& x0, double t) {
-  const Field x = exact.trajectories(x0, t);
-  return {t, x, exact.nodal_values(x, t).middleCols(exact.column("v"), 3)};
 }
 
 NodalFields nodal_fields(const DziukFlow::State& state) {

@@ -4,8 +4,7 @@
 #include <string>
 
 #include "solver/assembly/surface_space.hpp"
-#include "solver/flows/exact_evolution.hpp"
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/regularity.hpp"
 #include "solver/linalg/spd_solver.hpp"
 #include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
@@ -54,9 +53,6 @@ std::string dziuk_warning(int q);
 
 /// The state on nodes x at time 0, with v = -M(x)^-1 A(x) x.
 DziukFlow::State dziuk_state_on(const SurfaceSpace& space, const Field& x);
-
-/// The state whose nodal values are an exact solution's, in the nodes that start at x0.
-DziukFlow::State exact_dziuk_state(const ExactEvolution& exact, const Field& x0, double t);
 
 /// The flow's own nodal fields beside x: v.
 NodalFields nodal_fields(const DziukFlow::State& state);

@@ -2,9 +2,9 @@
 #include "solver/flows/dziuk_willmore_flow.hpp"
 
 #include "solver/error.hpp"
-#include "solver/flows/discrete_curvature.hpp"
-#include "solver/flows/l2_project.hpp"
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
+#include "solver/geometry/l2_project.hpp"
+#include "solver/geometry/regularity.hpp"
 #include "solver/linalg/node_block_lu.hpp"
 
 namespace esfem {

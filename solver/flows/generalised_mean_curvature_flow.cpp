@@ -112,18 +112,6 @@ GeneralisedMeanCurvatureFlow::State generalised_mean_curvature_state(const Power
   return state;
 }
 
-GeneralisedMeanCurvatureFlow::State exact_generalised_mean_curvature_state(const ExactEvolution& exact,
-                                                                           const Field& x0, double t) {
-  GeneralisedMeanCurvatureFlow::State state;
-  state.t = t;
-  state.x = exact.trajectories(x0, t);
-  const Field values = exact.nodal_values(state.x, t);
-  state.v = values.middleCols(exact.column("v"), 3);
-  state.u.resize(x0.rows(), 4);
-  state.u << values.middleCols(exact.column("nu"), 3), values.col(exact.column("V"));
-  return state;
-}
-
 NodalFields nodal_fields(const GeneralisedMeanCurvatureFlow::State& state) {
   return {{"v", state.v}, {"nu", state.u.leftCols(3)}, {"V", state.u.col(3)}};
 }

@@ -72,11 +72,6 @@ class GeneralisedMeanCurvatureFlow {
 GeneralisedMeanCurvatureFlow::State generalised_mean_curvature_state(const PowerLaw& law, Field x,
                                                                      const Field& nu, const Field& H);
 
-/// The state whose nodal values are an exact solution's with quantities v, nu and V, in the nodes that start
-/// at x0.
-GeneralisedMeanCurvatureFlow::State exact_generalised_mean_curvature_state(const ExactEvolution& exact,
-                                                                           const Field& x0, double t);
-
 /// The flow's own nodal fields beside x: v, nu, V.
 NodalFields nodal_fields(const GeneralisedMeanCurvatureFlow::State& state);
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "solver/error.hpp"
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/regularity.hpp"
 
 namespace esfem {
 

@@ -76,13 +76,6 @@ MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu
   return state;
 }
 
-MeanCurvatureFlow::State exact_mean_curvature_state(const ExactEvolution& exact, const Field& x0, double t) {
-  Field x = exact.trajectories(x0, t);
-  const Field values = exact.nodal_values(x, t);
-  return mean_curvature_state(t, std::move(x), values.middleCols(exact.column("nu"), 3),
-                              values.col(exact.column("H")));
-}
-
 MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const Field& x) {
   Field nu(x.rows(), 3), H(x.rows(), 1);
   for (int j = 0; j < x.rows(); ++j) {

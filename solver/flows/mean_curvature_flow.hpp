@@ -2,9 +2,8 @@
 #pragma once
 
 #include "solver/assembly/surface_space.hpp"
-#include "solver/flows/exact_evolution.hpp"
-#include "solver/flows/regularity.hpp"
-#include "solver/flows/reinitialisation.hpp"
+#include "solver/geometry/regularity.hpp"
+#include "solver/geometry/reinitialisation.hpp"
 #include "solver/linalg/spd_solver.hpp"
 #include "solver/nodal_field.hpp"
 #include "solver/time/history.hpp"
@@ -71,10 +70,6 @@ class MeanCurvatureFlow {
 
 /// The state with given positions, normals (N x 3) and mean curvatures (N x 1), and v = -H nu in the nodes.
 MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu, const Field& H);
-
-/// The state whose nodal values are an exact solution's with quantities nu and H, in the nodes that start at
-/// x0.
-MeanCurvatureFlow::State exact_mean_curvature_state(const ExactEvolution& exact, const Field& x0, double t);
 
 /// The state whose nodal values are the normals and mean curvatures of a surface that its nodes x lie on; t =
 /// 0.

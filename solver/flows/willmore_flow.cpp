@@ -2,9 +2,9 @@
 #include "solver/flows/willmore_flow.hpp"
 
 #include "solver/error.hpp"
-#include "solver/flows/l2_project.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_terms.hpp"
+#include "solver/geometry/l2_project.hpp"
 #include "solver/linalg/gmres.hpp"
 
 namespace esfem {

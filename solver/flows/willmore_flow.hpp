@@ -5,8 +5,8 @@
 
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/lagged_block_solver.hpp"
-#include "solver/flows/regularity.hpp"
-#include "solver/flows/reinitialisation.hpp"
+#include "solver/geometry/regularity.hpp"
+#include "solver/geometry/reinitialisation.hpp"
 #include "solver/nodal_field.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "solver/time/history.hpp"

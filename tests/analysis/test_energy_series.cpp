@@ -9,7 +9,7 @@
 #include "solver/analysis/energy_series.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem::test_energy_series {

@@ -8,6 +8,7 @@
 #include "solver/constants.hpp"
 #include "solver/fe/lagrange.hpp"
 #include "solver/mesh/profile_grid.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem::test_errors {
 namespace {

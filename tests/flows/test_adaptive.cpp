@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "solver/flows/dziuk_flow.hpp"
-#include "solver/flows/growing_sphere.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/problems/growing_sphere.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem::test_adaptive {

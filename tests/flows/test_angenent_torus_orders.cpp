@@ -5,10 +5,11 @@
 #include <map>
 
 #include "solver/analysis/errors.hpp"
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/mesh/profile_grid.hpp"
+#include "solver/problems/exact_states.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem::test_angenent_torus_orders {

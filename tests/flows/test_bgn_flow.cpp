@@ -6,8 +6,8 @@
 #include <ostream>
 
 #include "solver/flows/bgn_flow.hpp"
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_flow.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/mesh/generate.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/bgn_schemes.hpp"

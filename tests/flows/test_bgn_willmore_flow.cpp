@@ -7,7 +7,7 @@
 
 #include "solver/constants.hpp"
 #include "solver/flows/bgn_willmore_flow.hpp"
-#include "solver/flows/discrete_curvature.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/bgn_schemes.hpp"

@@ -4,9 +4,9 @@
 
 #include "solver/error.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
-#include "solver/flows/ritz_map.hpp"
+#include "solver/geometry/ritz_map.hpp"
 #include "solver/mesh/read.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
 #include "solver/tables/table.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"

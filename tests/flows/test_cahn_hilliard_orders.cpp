@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/evolving_ellipsoid.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 

@@ -6,7 +6,8 @@
 #include <cmath>
 
 #include "solver/analysis/errors.hpp"
-#include "solver/flows/growing_sphere.hpp"
+#include "solver/problems/exact_evolution.hpp"
+#include "solver/problems/growing_sphere.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 #include "tests/flows/semi_discrete_solution.hpp"

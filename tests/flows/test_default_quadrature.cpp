@@ -7,6 +7,7 @@
 #include "solver/analysis/errors.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/exact_states.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem::test_default_quadrature {

@@ -5,6 +5,7 @@
 
 #include "solver/constants.hpp"
 #include "solver/flows/dziuk_flow.hpp"
+#include "solver/problems/exact_states.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "solver/constants.hpp"
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_willmore_flow.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"

@@ -5,8 +5,9 @@
 #include <cmath>
 
 #include "solver/error.hpp"
-#include "solver/flows/power_law_sphere.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/problems/exact_states.hpp"
+#include "solver/problems/power_law_sphere.hpp"
 #include "tests/flows/reference_case.hpp"
 
 namespace esfem::test_generalised_mean_curvature_flow {

@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/problems/exact_evolution.hpp"
+#include "solver/problems/exact_states.hpp"
 #include "tests/flows/reference_case.hpp"
 
 namespace esfem::test_mean_curvature_flow {

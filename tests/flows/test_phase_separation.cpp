@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "solver/flows/phase_separation.hpp"
+#include "solver/problems/disturbed_mixture.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 

@@ -7,11 +7,12 @@
 
 #include "solver/flows/bgn_flow.hpp"
 #include "solver/flows/coupled_diffusion.hpp"
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/phase_separation.hpp"
 #include "solver/flows/willmore_flow.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
+#include "solver/problems/disturbed_mixture.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 

@@ -8,6 +8,7 @@
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/phase_separation.hpp"
 #include "solver/flows/willmore_flow.hpp"
+#include "solver/problems/disturbed_mixture.hpp"
 #include "tests/assembly/meshes.hpp"
 #include "tests/flows/reference_case.hpp"
 

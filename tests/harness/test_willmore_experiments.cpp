@@ -13,6 +13,7 @@
 #include "experiments/harness/stationary_willmore.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem::test_willmore_experiments {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/mesh/curve.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/mesh/read.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "solver/error.hpp"
-#include "solver/flows/tumour_growth.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/problems/tumour_growth.hpp"
 #include "solver/time/integrate.hpp"
 
 namespace esfem::test_tumour_growth {

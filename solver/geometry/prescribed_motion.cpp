@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/prescribed_motion.hpp"
+#include "solver/geometry/prescribed_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

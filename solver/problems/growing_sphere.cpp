@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/growing_sphere.hpp"
+#include "solver/problems/growing_sphere.hpp"
 
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

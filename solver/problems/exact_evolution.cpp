@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/exact_evolution.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 #include <algorithm>
 #include <cmath>

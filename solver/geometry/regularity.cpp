@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/regularity.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "solver/error.hpp"
-#include "solver/flows/discrete_curvature.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 
 namespace esfem {
 

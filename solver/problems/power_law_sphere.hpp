@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "solver/flows/exact_evolution.hpp"
 #include "solver/flows/generalised_mean_curvature_flow.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/pfhub_sphere.hpp"
+#include "solver/problems/pfhub_sphere.hpp"
 
 namespace esfem {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/power_law_sphere.hpp"
+#include "solver/problems/power_law_sphere.hpp"
 
 #include <cmath>
 
 #include "solver/error.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

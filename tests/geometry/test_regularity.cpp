@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "solver/error.hpp"
-#include "solver/flows/regularity.hpp"
+#include "solver/geometry/regularity.hpp"
 #include "tests/assembly/meshes.hpp"
 
 namespace esfem::test_regularity {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/discrete_curvature.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 
 #include <cmath>
 

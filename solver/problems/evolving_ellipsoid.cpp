@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/evolving_ellipsoid.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
 
 #include <cmath>
 
 #include "solver/constants.hpp"
-#include "solver/flows/ritz_map.hpp"
+#include "solver/geometry/ritz_map.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/flows/exact_evolution.hpp"
-#include "solver/flows/prescribed_motion.hpp"
+#include "solver/geometry/prescribed_motion.hpp"
+#include "solver/problems/exact_evolution.hpp"
 #include "solver/surfaces/surface.hpp"
 
 namespace esfem {

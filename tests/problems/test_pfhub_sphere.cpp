@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/constants.hpp"
-#include "solver/flows/pfhub_sphere.hpp"
+#include "solver/problems/pfhub_sphere.hpp"
 #include "tests/assembly/meshes.hpp"
 
 namespace esfem::test_pfhub_sphere {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/plane_waves.hpp"
+#include "solver/problems/plane_waves.hpp"
 
 #include <cmath>
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "solver/flows/discrete_curvature.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {

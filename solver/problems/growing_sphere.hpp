@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "solver/flows/coupled_diffusion.hpp"
-#include "solver/flows/exact_evolution.hpp"
+#include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/ritz_map.hpp"
+#include "solver/geometry/ritz_map.hpp"
 
 #include "solver/assembly/lifted_points.hpp"
 #include "solver/linalg/spd_solver.hpp"

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/problems/exact_evolution.hpp"
 #include "solver/surfaces/surface.hpp"
 #include "solver/types.hpp"
 

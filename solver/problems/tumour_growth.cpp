@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "solver/flows/tumour_growth.hpp"
+#include "solver/problems/tumour_growth.hpp"
 
 #include "solver/error.hpp"
-#include "solver/flows/plane_waves.hpp"
+#include "solver/problems/plane_waves.hpp"
 
 namespace esfem {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "solver/error.hpp"
-#include "solver/flows/exact_evolution.hpp"
 #include "solver/mesh/mesh.hpp"
+#include "solver/problems/exact_evolution.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
 
 namespace esfem::test_exact_evolution {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "solver/flows/discrete_curvature.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "tests/assembly/meshes.hpp"
 
 namespace esfem::test_discrete_curvature {
