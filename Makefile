@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# `make help` says what there is. Needs GNU make 4.3.
+# `make help` lists the targets. Needs GNU make 4.3.
 #
 # Every experiment is a grid of cells (independent runs), known only to its executable. So the targets that run
-# something first build, then list the cells (`run`), and then call experiments/harness/cells.mk, where each cell, table
+# experiments first build, then list the cells (`run`), and then call experiments/harness/cells.mk, where each cell, table
 # and figure is an ordinary target.
 
 SHELL := bash
@@ -20,7 +20,7 @@ endif
 asked_jobs = $(patsubst -j%,%,$(filter -j%,$(MAKEFLAGS)))
 local_jobs = $(shell n=$(asked_jobs); echo $$(( $${n:-$(cores)} < $(cores) ? $${n:-$(cores)} : $(cores) )))
 
-# Another folder leaves the source tree as it is: make build BUILD=/tmp/esfem
+# Another folder leaves the source tree unchanged: make build BUILD=/tmp/esfem
 BUILD ?= build
 ifneq ($(words $(BUILD)),1)
 $(error BUILD is "$(BUILD)": make needs a folder without blanks in its name)
@@ -42,28 +42,28 @@ help:
 	@echo "make figures       install what is missing, build, run every experiment as published, draw all figures"
 	@echo "                   -> results/paper/STEM.{json,csv,tex}, figures/<paper>/fig*.{pdf,png}"
 	@echo "make check         install, build, all unit tests, every experiment at preset check, a verdict per claim"
-	@echo "make report        one page with every figure, claim and verdict, from the published results that are there"
+	@echo "make report        one page with every figure, claim and verdict, from the published results that exist"
 	@echo "                   -> report/index.html, report/report.pdf, report/verdicts.json"
 	@echo "make STEM          one experiment as published, with its figures; STEM is one of"
 	@echo "                   $(or $(stems),(none yet))"
 	@echo "make evolve        only the program for your own surface, mesh and flow -> $(BIN)/evolve"
-	@echo "make sanitize      tests of what flows are made of under AddressSanitizer and UBSan, in build-asan/"
+	@echo "make sanitize      tests of all parts below the flows under AddressSanitizer and UBSan, in build-asan/"
 	@echo "make crash         kills runs at KILLS=200 random moments, fills disks, damages checkpoints; then compares the numbers"
 	@echo "make fuzz          mutated files for each reader, SECONDS=60 of each, in build-fuzz/ (needs clang)"
-	@echo "make bench         ms per step and phase at growing sizes, factorisations beside CHOLMOD's and MUMPS's"
-	@echo "make bench-peers   a step beside the same in DOLFINx and PETSc, where they are installed"
+	@echo "make bench         ms per step and phase at growing sizes, factorisations compared with CHOLMOD and MUMPS"
+	@echo "make bench-peers   a step compared with DOLFINx and PETSc, where they are installed"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
-	@echo "make gallery       small pictures in docs/ and the headline table of README.md, from the same"
-	@echo "make clean         remove build/ and results/check/; published results and figures are kept, and used again"
+	@echo "make gallery       small pictures in docs/ and the headline table of README.md, from the published results"
+	@echo "make clean         remove build/ and results/check/; published results and figures are kept and reused"
 	@echo "make distclean     remove results/, figures/ and report/ as well"
 	@echo
 	@echo "-jN                N jobs at once instead of one per core ($(cores) here)"
 	@echo "BUILD=FOLDER       build there instead of in build/"
 	@echo "CXX=clang++, CMAKE_GENERATOR=Ninja, OPTIONS=-D...  another compiler, build tool, options for CMake"
-	@echo 'LAUNCH="srun -n1"  what is put in front of each run: make figures -j100 LAUNCH="srun -n1"'
-	@echo "Stop it at any moment and type the same again: finished runs are kept."
+	@echo 'LAUNCH="srun -n1"  prefix of each run's command: make figures -j100 LAUNCH="srun -n1"'
+	@echo "Interrupt it at any time and repeat the command: finished runs are kept."
 
-# prepare(step, kinds of packages, targets): packages, configuration and executables, as far as a goal needs them.
+# prepare(step, kinds of packages, targets): packages, configuration and executables, as far as a target needs them.
 prepare = JOBS=$(local_jobs) OPTIONS="$(OPTIONS)" experiments/harness/prepare $(1) "$(2)" $(3)
 prepare-figures:
 	@$(call prepare,build,build figures,experiments)
@@ -86,11 +86,11 @@ figures: prepare-figures
 	        printf "%8.0f  %d runs in all\n", all, n
 	        for (r in run) printf "%8.0f  %s\n", run[r], r | "sort -gr | head -n 8" }'
 
-# report_of(preset, figures, folder, options): the verdicts on the tables that are there, then the report.
+# report_of(preset, figures, folder, options): the verdicts on the existing tables, then the report.
 define report_of
 mkdir -p $(3); status=0
 tables=$$(ls $(stems:%=results/$(1)/%.json) 2>/dev/null || true)
-if [ -z "$$tables" ]; then echo "no tables in results/$(1): make figures, or make STEM, makes them" >&2; exit 1; fi
+if [ -z "$$tables" ]; then echo "no tables in results/$(1): run make figures or make STEM first" >&2; exit 1; fi
 $(BIN)/check_orders $$tables --output $(3)/verdicts.json >$(3)/verdicts.txt || status=$$?
 if [ $$status = 1 ] || [ $$status = 2 ]; then exit $$status; fi
 tail -n 1 $(3)/verdicts.txt
@@ -107,7 +107,7 @@ report-check:
 $(stems): %: prepare-%
 	+@$(call run,paper,$@,all)
 
-# Every part of the check runs, and the end says which of them failed. What they read is traced for the last one.
+# All parts of the check run; those that failed are listed at the end. Files they read are traced for the last part.
 check_parts := format-check test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts independent \
                plots-check report-check packages-check
 check: build
@@ -120,7 +120,7 @@ check: build
 	if [ -n "$$failed" ]; then echo "== check FAILED:$$failed"; exit 1; fi
 	echo "== check passed: $(check_parts)"
 
-# `check` has built what its parts need; a part that is called by itself builds first.
+# `check` has built what its parts need; a part that is run on its own builds first.
 ifeq ($(MAKELEVEL),0)
 test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts independent plots-check \
   report-check packages-check: build
@@ -136,11 +136,11 @@ test-plots:
 	@$(PYTHON) -m unittest discover -q -s tests/packages & packages=$$!
 	(cd plots && basename -s .py -a test_*.py | xargs -n5 -P$(local_jobs) $(PYTHON) -m unittest -q)
 	wait $$packages
-# VTK and ParaView read the snapshots where they are installed; so what this reads is in no list of packages.
+# VTK and ParaView read the snapshots where they are installed; so their files belong to no package of the lists.
 test-vtu:
 	@$(PYTHON) tests/mesh/test_vtu_files.py -q
 
-# Sanitizers watch the tests of the parts that everything else is made of; flows and the finest meshes take too long.
+# Sanitizers for the tests of all parts below the flows; flows and the finest meshes take too long.
 sanitize:
 	@export BUILD=build-asan PRESET=asan
 	$(call prepare,build,build tests peers,sanitized)
@@ -153,13 +153,13 @@ crash: build
 crash-check:
 	@$(PYTHON) tests/crash/crash.py --build $(BUILD) --kills 20 --cuts 0 evolve cut
 
-# The library as others use it: installed below the build folder, and found by a project that knows nothing of this one.
+# The library as others use it: installed below the build folder, and found by an independent project.
 consumer-check:
 	@$(PYTHON) -m unittest discover -q -s tests/consumer
 	$(PYTHON) tests/consumer/check_consumer.py --build $(BUILD)
 
-# Each reader of what others have written is fed with mutations of its corpus. What is found is kept in
-# build-fuzz/corpus; an input that breaks a promise is build-fuzz/TARGET-crash-*, and becomes a file of tests/fuzz/corpus.
+# Each reader of input files is run on mutations of its corpus. New inputs are kept in
+# build-fuzz/corpus; one that makes a reader fail is build-fuzz/TARGET-crash-*, and becomes a file of tests/fuzz/corpus.
 SECONDS ?= 60
 fuzz:
 	@if ! command -v clang++ >/dev/null; then echo "no clang++: install clang and libclang-rt-14-dev" >&2; exit 1; fi
@@ -194,8 +194,8 @@ plots-check:
 verdicts:
 	@$(if $(stems),$(BIN)/check_orders $(stems:%=results/check/%.json),echo "no experiments")
 
-# Do packages.txt and packages-tests.txt bring all that is read? And is each of their packages needed?
-# Taken away, libgmock-dev must be missed: it once was, and nobody saw it. WITHOUT=each takes away one after the other.
+# Do packages.txt and packages-tests.txt install all files that are read, and is each of their packages needed?
+# The removal of libgmock-dev must be detected (it once was not). WITHOUT=each removes one package after the other.
 packages-check:
 	@$(PYTHON) tests/packages/check_packages.py --build $(BUILD) --without $(or $(WITHOUT),libgmock-dev)
 packages-check-each:
@@ -214,7 +214,7 @@ independent:
 
 bench:
 	@$(call prepare,build,build bench peers,bench_step)
-	@# One thread for everybody, and for OpenBLAS, which knows no CPU newer than itself, its best kernels.
+	@# One thread each; OpenBLAS does not know CPUs newer than itself, so its best kernels are chosen here.
 	core=$$(grep -qw avx512vl /proc/cpuinfo && echo SkylakeX || { grep -qw avx2 /proc/cpuinfo && echo Haswell; } || true)
 	OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 OPENBLAS_CORETYPE=$$core $(BIN)/bench_step
 
@@ -229,7 +229,7 @@ distclean: clean
 	rm -rf results figures report
 
 # run(preset, stems, goal): lists the cells of the stems, then makes the goal of cells.mk. The cells
-# depend on `.executable`, the checksum of their executable: a build that leaves it as it was outdates nothing.
+# depend on `.executable`, the checksum of their executable: a build that leaves it unchanged outdates nothing.
 define run
 for stem in $(2); do
   folder=results/$(1)/cells/$$stem; mkdir -p $$folder

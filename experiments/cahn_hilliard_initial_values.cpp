@@ -233,7 +233,7 @@ int main(int argc, char** argv) {
   experiment.help =
       "The Cahn-Hilliard equation on an evolving ellipsoid from interpolated initial values and from their "
       "Ritz maps with the\n"
-      "correction theta (bk22 Figure 8): snapshots, and how far the solutions differ, relative to that of "
+      "correction theta (bk22 Figure 8): snapshots, and the difference of the solutions, relative to that of "
       "interpolation. Step\n"
       "sizes 0.0125 2^-k, t to 5; levels 0 to 3: 258, 1,026, 4,098 (as published), 16,386 nodes of linear "
       "elements. No units.\n\n"

@@ -20,14 +20,14 @@ namespace {
 using namespace esfem;
 
 const char* const help =
-    "Holds tables of results against the claims of the papers (reference/<experiment>.json) and prints a "
+    "Compares tables of results with the claims of the papers (reference/<experiment>.json) and prints a "
     "verdict for\n"
     "each: whether it is met, what was measured (orders with their 95% interval), what was expected, and "
     "from how many\n"
-    "rows. Where the paper's statement does not hold as it stands, the verdict says what became of it "
-    "(reproduced, but;\n"
-    "not reproduced; corrected); the numbers then are this project's finding, and are checked all the "
-    "same. A family of\n"
+    "rows. Where the paper's statement does not hold as printed, the verdict is \"reproduced, but\", \"not "
+    "reproduced\" or\n"
+    "\"corrected\"; the expected numbers are then this project's findings, and are checked likewise. A "
+    "family of\n"
     "claims is one line, \"18 of 20 met\"; those that are not met are listed below it.\n\n"
     "--output FILE writes all of them as JSON: {\"schema\": \"esfem-verdicts/1\", \"tables\": "
     "[{\"experiment\", \"paper\",\n"

@@ -93,7 +93,7 @@ int evolve(const std::string& file, const json& origin) {
     const std::string status = end_of(config, recorder, error);
     if (!recorder.empty()) {
       failures = write_outputs(config, recorder, status, config_json, origin);
-      warn(failures.empty() ? format("what was computed up to t = %g is written", recorder.newest().t)
+      warn(failures.empty() ? format("the results up to t = %g have been written", recorder.newest().t)
                             : joined(failures, config));
     }
     throw NumericsError(status);
@@ -125,10 +125,9 @@ int main(int argc, char** argv) {
             evolve_config_help(),
         "evolve");
     line.optional_argument("config", file, "the configuration", "CONFIG.json");
-    line.flag(
-        "--schema", schema,
-        "print the keys of a configuration as JSON Schema; with \"$schema\": \"schema.json\" in it an editor "
-        "completes them");
+    line.flag("--schema", schema,
+              "print the keys of a configuration as JSON Schema; editors complete a configuration that "
+              "has \"$schema\": \"schema.json\"");
     line.integer("--threads", 1, 1024, threads, "threads that the factorisations may use");
     if (!line.parse(argc, argv)) return static_cast<int>(exit_done);
     if (schema) {

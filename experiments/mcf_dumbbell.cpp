@@ -234,7 +234,7 @@ int main(int argc, char** argv) {
                            {"mean_curvature", "dziuk", "bgn"},
                            "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6) | bgn: Barrett, Garcke, "
                            "Nürnberg 2008, backward Euler; with "
-                           "--degree 1 on triangles cut into four"},
+                           "--degree 1 on triangles divided into four"},
                           {"variant",
                            {"plain", "normalised", "interpolated", "alpha1", "alpha10", "alpha100"},
                            "of (5.1): nu_h normalised | v_h by interpolation | with the stabilising term of "

@@ -176,7 +176,7 @@ int main(int argc, char** argv) {
   experiment.paper = "kll21";
   experiment.help =
       "Willmore flow of an ellipsoid, a red blood cell and a perturbed torus to t = 4 (kll21 Figure 7.5):\n"
-      "energies, radii and snapshots, as the paper runs it, with adaptive steps, and with relaxation to\n"
+      "energies, radii and snapshots, with the paper's steps, with adaptive steps, and with relaxation to\n"
       "the geometry. Level 0: the published numbers of nodes, each further level half of them. No units.\n\n"
       "Example: willmore_relaxation --surface small_ellipsoid --setting relaxed --levels 0-2";
   experiment.grid.axes = {{"surface", names_of(cases), "surfaces to start from"},

@@ -40,8 +40,8 @@ class OpenObjects {
     case json::parse_event_t::array_start:
       open_.emplace_back();
       if (open_.size() > deepest)
-        throw InputError(format("%s%s: more than %zu arrays and objects in each other", file_.c_str(),
-                                place().c_str(), deepest));
+        throw InputError(
+            format("%s%s: more than %zu nested arrays and objects", file_.c_str(), place().c_str(), deepest));
       break;
     case json::parse_event_t::object_end:
     case json::parse_event_t::array_end:

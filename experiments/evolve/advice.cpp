@@ -13,8 +13,8 @@ std::string thin_elements_remark(const Mesh& mesh, const MeshOrigin& origin) {
   const double expected = RegularityLimits().radius_ratio;
   if (origin.source.empty() || quality.min_radius_ratio >= expected) return "";
   return format(
-      "%s: %s: radius ratio %.2g, at least %g expected; thin elements make the results "
-      "worse and small steps necessary: \"mesh\": {.., \"remesh\": edge_length} replaces them",
+      "%s: %s: radius ratio %.2g, at least %g expected; thin elements increase the "
+      "errors and require small steps: \"mesh\": {.., \"remesh\": edge_length} replaces them",
       origin.source.c_str(), origin.element(quality.worst_element).c_str(), quality.min_radius_ratio,
       expected);
 }
@@ -30,8 +30,8 @@ bool have_parted(const EvolveConfig& config, const RunRecorder::CurvatureCompari
 std::string curvature_remark(const RunRecorder::CurvatureComparison& found, double t) {
   return format(
       "nu and H, which the flow evolves, differ from those of the surface at t = %g: H nu by %.0f%%; 1/2 int "
-      "H² is "
-      "%.4g, 1/2 int |kappa|² of the surface %.4g; the area changes at the rate %.4g, int H nu . v is %.4g",
+      "H² is %.4g, 1/2 int |kappa|² of the surface %.4g; the area changes at the rate %.4g, int H nu . v is "
+      "%.4g",
       t, 100 * found.deviation, found.energy, found.kappa_energy, found.rates.of_surface,
       found.rates.of_fields);
 }
@@ -41,21 +41,21 @@ std::string sliding_remark(const Series& series) {
   const double taken = area[0] - area[1], expected = (t[1] - t[0]) * 2 * std::max(W[0], W[1]);
   if (taken <= 0.005 * area[0] || taken <= 3 * expected) return "";
   return format(
-      "the first step takes %.3g of the area %.4g, where mean curvature flow takes about %.2g: nodes have "
-      "slid off "
-      "edges of the surface; try \"flow\": \"dziuk\", or a finer mesh",
+      "the first step removes %.3g of the area %.4g, mean curvature flow would remove about %.2g: nodes "
+      "have slid off edges of the surface; try \"flow\": \"dziuk\", or a finer mesh",
       taken, area[0], expected);
 }
 
 std::string extinction(double end, const Series& series) {
   const std::vector<double>& area = series.at("area");
-  return format("extinct at t = %g: of the area %g is left of %g at the start, and none there", end,
-                area.back(), area.front());
+  return format("extinct at t = %g: the area has decreased to %g, from %g at the start, and vanishes then",
+                end, area.back(), area.front());
 }
 
 Key reinitialise_key() {
   return {Key::positive, "reinitialise", nullptr,
-          "nu and H are taken anew from the surface when H nu differs by more than this in L2, such as 0.05"};
+          "nu and H are recomputed from the surface when H nu differs from it by more than this in L2, "
+          "such as 0.05"};
 }
 
 std::string linear_elements(const EvolveConfig& config) {

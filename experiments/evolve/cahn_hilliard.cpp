@@ -48,7 +48,7 @@ void run_phase_separation(const Run& run) {
   PhaseSeparation flow(run.space, run.config.mesh.nodes, epsilon);
   run_flow(flow, run, start);
   if (flow.replaced_steps() > 0)
-    warn(format("steps in which the energy would have risen, replaced by smaller ones of backward Euler: %d",
+    warn(format("steps in which the energy would have risen, replaced by smaller backward Euler steps: %d",
                 flow.replaced_steps()));
 }
 
@@ -79,8 +79,8 @@ std::vector<Entry> cahn_hilliard_entries() {
 
   Entry mixture = cahn_hilliard_entry("phase_separation");
   mixture.help =
-      "a disturbed mixture on any surface, at rest; implicit, for steps of any size: where the energy would "
-      "rise, a step is replaced by smaller ones of backward Euler";
+      "separation of a disturbed mixture on any stationary surface; implicit, for steps of any size: a step "
+      "in which the energy would rise is replaced by smaller backward Euler steps";
   mixture.parameters = {{Key::positive, "epsilon", 0.5, "width of the interface", 1},
                         {Key::number, "mean", 0, "of u over the surface"},
                         {Key::number, "disturbance", 0.1, "of u"},

@@ -48,8 +48,8 @@ AdaptiveSteps adaptive_grid(const JsonReader& whole, const Entry& entry) {
   if (reader.has("largest_step")) grid.largest_step = positive_or(reader, "largest_step", 0);
   if (reader.has("first_step") && grid.end_time > 0 && grid.first_step >= grid.end_time)
     throw InputError(
-        format("%s: found first_step = %g, which is not controlled, and end_time = %g; expected a "
-               "first step that is smaller",
+        format("%s: found first_step = %g and end_time = %g; expected first_step < end_time, since "
+               "the first step is not controlled",
                reader.where().c_str(), grid.first_step, grid.end_time));
   return grid;
 }
@@ -121,8 +121,7 @@ SnapshotPlan snapshot_plan(const JsonReader& output) {
     }
   }
   if (plan.pvd.empty() && (output.has("every") || output.has("times"))) {
-    throw InputError(output.where() +
-                     ": every and times are about snapshots; expected the key vtu beside them");
+    throw InputError(output.where() + ": every and times select snapshots; expected the key vtu, too");
   }
   return plan;
 }

@@ -88,7 +88,7 @@ Entry coupled_entry(const std::string& problem) {
 
 std::vector<Entry> coupled_diffusion_entries() {
   Entry sphere = coupled_entry("growing_sphere");
-  sphere.help = "nick18 (2.19)-(2.21), 7.3: a unit sphere that grows by what diffuses on it";
+  sphere.help = "nick18 (2.19)-(2.21), 7.3: a unit sphere whose growth is driven by diffusion on it";
   sphere.fields = "u";
   sphere.variant.push_back(word("coupling", {"additive", "quotient", "none"}, "of g to u"));
   sphere.parameters = {{Key::number, "alpha", 1, "of (2.8)"}, {Key::number, "beta", 1, "of (2.8)"}};

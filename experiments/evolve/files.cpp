@@ -124,7 +124,7 @@ std::string joined(const std::vector<std::string>& failures, const EvolveConfig&
   for (const std::string& failure : failures) text += (text.empty() ? "" : "; ") + failure;
   std::error_code ignored;
   if (!config.checkpoint.empty() && std::filesystem::exists(config.checkpoint, ignored))
-    text += "; the same command goes on from " + config.checkpoint;
+    text += "; the same command resumes from " + config.checkpoint;
   return text;
 }
 

@@ -63,18 +63,20 @@ std::string evolve_config_help() {
   for (const Entry& entry : entries()) flows += help_of(entry);
   return R"(CONFIG.json (keys without a default must be given; unknown keys are errors; evolve --schema prints them for editors):
   {"flow": "mean_curvature", "problem": .., "variant": {..}, "parameters": {..},   see Flows
-   "surface": {"name": "sphere", "radius": 2},  exact initial surface; may be left out with a mesh file
+   "surface": {"name": "sphere", "radius": 2},  exact initial surface; optional with a mesh file
    "mesh": {"file": "a.msh",                  .msh, .off, .obj, .ply, .stl, .vtu of evolve (plots/convert_mesh.py converts other
-                                              files): closed, of one or several parts; seams, polygons and orientation are
-                                              mended with a remark; nodes are projected to the surface, where one is given
-            "remesh": 0.1,                    flat triangles made anew with edges of about this length, on those of the
-                                              file; default: not. Edges sharper than feature_angle are kept
-            "curve": true}                    nodes of degree 2 to 4 on a smooth surface through the corners; default: not.
+                                              files): closed, of one or several components; seams, polygons and
+                                              orientation are repaired and reported; nodes are projected onto the surface,
+                                              if one is given
+            "remesh": 0.1,                    replaces the flat triangles of the file by new ones on them, with edges of
+                                              about this length; default: no. Edges sharper than feature_angle are kept
+            "curve": true}                    puts nodes of degree 2 to 4 on a smooth surface through the corners; default: no.
                                               {"feature_angle": 40}, in degrees: sharper edges stay sharp
          | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
-   "degree": 2,                               1..4; default of a file without "surface": its own, 1 where triangles are flat
-                                              and not curved: nu and H of flat ones do not converge with higher degrees
+   "degree": 2,                               1..4; default for a file without "surface": the degree of its elements, which is
+                                              1 for flat triangles without "curve": on these nu and H do not converge with
+                                              higher degrees
    "bdf": 3,                                  1..5; bgn: 1; default for dziuk without "surface": 1
    "tau": 0.05,                               step size (no default)
    "steps": 0,                                end time = steps tau; 0 writes the initial surface
@@ -86,47 +88,50 @@ std::string evolve_config_help() {
                 "largest_step": 0.01},        default: no bound
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere, angenent_torus), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
-   "limits": {"curvature_size": 5,            singular is more |H| times edge than this (or 4 times that of the start),
-              "radius_ratio": 0.01,           an element's radius ratio below this (or the smallest of the start squared;
-              "normal_length": 4},            no limit where that is < 0.01), |nu| or 1/|nu| of a flow's nu beyond this
+   "limits": {"curvature_size": 5,            singular: |H| times edge length above this (or 4 times its initial maximum);
+              "radius_ratio": 0.01,           radius ratio of an element below this (or the square of the initial minimum; no
+              "normal_length": 4},            limit if that minimum is < 0.01); |nu| or 1/|nu| of a flow's nu above this
    "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
-              "checkpoint": "run.checkpoint", the same command goes on from it; see below
+              "checkpoint": "run.checkpoint", the same command resumes from it; see below
               "every": 10,                    at every 10th step (default 0: none of these)
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
-Flows, the first problem of each is its default; with the defaults of their keys:
+Flows and the defaults of their keys; the first problem of a flow is its default:
 )" + flows +
-         R"(Units: what is given has those of the data. Defaults and tolerances are relative to L, the power of ten next to
-sqrt(area/(4 pi)) of the initial surface: 1 for sizes of 0.32 to 3.2. Times have the unit T = L^2;
-where a flow says so, another power (phase_separation: mobility 1, epsilon a length). The waves of a disturbance have wave numbers up to 4/L, in
-phase_separation the mean 0, and phases about the origin, on a mesh without "surface" about its centroid.
+         R"(Units: values that you give have the units of your data. Defaults and tolerances are relative to L, the power of ten
+nearest to sqrt(area/(4 pi)) of the initial surface: L = 1 for sizes of 0.32 to 3.2. Times have the unit T = L^2, or another
+power where the flow says so (phase_separation: mobility 1, epsilon a length). A disturbance consists of waves with wave
+numbers up to 4/L and phases relative to the origin (on a mesh without "surface": to its centroid); in phase_separation its
+mean is 0.
 Surfaces and their defaults:
 )" + named_surfaces_help() +
-         R"(Output: nodal has t, x, v and what else the flow has (see Flows) of the last step, one row a node; the nodes of the mesh
-file come first, in its order. elements are the rows of the nodes of each element, counted from 0 (corners, then the nodes
-of the edges 01, 12, 20, then inner ones); node_numbers, where they are not 1, 2, .., the file's own of its nodes.
-A run starts from the nodal values of its mesh file ($NodeData of .msh, point data of .vtu) that have the names listed
-there, and says so; t starts at 0, and defaults are relative to the length of this surface: to go on
-with the parameters of the run before, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle
-(degrees), worst_radius_ratio, where the flow has nu also min_nu, max_nu; for
-willmore and surface_diffusion kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and
-energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as
-field data TimeValue, step, flow and configuration (this file; texts are arrays of bytes). Where the flow has no nu, max_H
-and willmore_energy, and nu and H of snapshots, are those of the discrete surface.
-A run that meets a singularity, shrinks to nothing (extinct: its area, extrapolated, is zero within the next step, or
-below 1e-6 of the first, or an area A under mean curvature flow has lived for A/(16 pi), the longest possible), or in which
-u grows to 1000 times its first size (tumour_growth: or that of its steady state), writes what it has computed, says so,
-and ends with exit code 2. "status" of series is "ok", what has ended the run, or "ok, but ..": nu and H of a flow that evolves them are no longer those of the surface (H nu
-and kappa, smoothed over an edge length, differ by more than 25% in L2, or the rates of area int H nu . v and int kappa . v
-by more than 25% of ||H nu|| ||v||, or willmore_energy and kappa_energy by more than 25%, degree 1: 50%; looked at at the
-start, the end and every 50 steps), as on meshes that do not resolve the curvature; or, bgn, nodes have slid off edges.
-Folders of output files are made, and the files tried, before the first step.
+         R"(Output: nodal has t, x, v and the nodal fields of the flow (see Flows) at the last step, one row per node; the nodes of the
+mesh file come first, in its order. elements has one row per element: its nodes, counted from 0 (corners, then the nodes of
+the edges 01, 12, 20, then inner ones). node_numbers are the numbers of the nodes in the file, if these are not 1, 2, ..
+A run starts from those nodal values of its mesh file ($NodeData of .msh, point data of .vtu) that are listed with its flow
+("starts from"), and reports this. t starts at 0, and defaults are relative to the length of this surface: to continue with
+the parameters of an earlier run, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H,
+h, worst_angle (degrees), worst_radius_ratio; if the flow has nu, also min_nu and max_nu; for willmore and surface_diffusion
+kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
+(u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as field data TimeValue, step, flow and
+configuration (this file; texts are arrays of bytes). If the flow has no nu, then max_H, willmore_energy, and nu and H of
+the snapshots are those of the discrete surface.
+A run ends with exit code 2, and reports and writes what it has computed, when it meets a singularity, when u grows to
+1000 times its initial size (tumour_growth: or that of its steady state), or when the surface is extinct: its extrapolated
+area is zero within the next step, or its area is below 1e-6 of the initial one, or, under mean curvature flow, it has lived
+for A/(16 pi), the longest possible time for an area A.
+"status" of the series is "ok", the reason why the run ended, or "ok, but ..": then nu and H, which the flow evolves, no
+longer agree with the surface, for example because the mesh does not resolve the curvature; or, with bgn, nodes have slid
+off edges. nu and H are compared with the surface at the start, at the end and every 50 steps; they do not agree if H nu and
+kappa, smoothed over an edge length, differ by more than 25% in L2, or the rates of area int H nu . v and int kappa . v by
+more than 25% of ||H nu|| ||v||, or willmore_energy and kappa_energy by more than 25% (degree 1: 50%).
+Before the first step, missing folders of output files are created and the files are opened for writing as a test.
 Checkpoint: the file is written every 30 seconds, when the run is stopped, and at its end, and is kept. A run that finds it
-goes on from it, bit for bit as if it had not been stopped; so more steps, or a later end_time, prolong a finished run (with
-adaptive steps the last ones, which led to the earlier end, are taken again). output may change: every and times hold from
-there on, and a vtu of another name begins there. A file that does not serve (another tau, mesh, variant, build of the
-program; damaged) is an error before the first step, and stays as it is. What a run has gone on from is kept as
-run.checkpoint.previous.
+resumes from it, bit for bit as if it had not been stopped; more steps or a later end_time thus prolong a finished run (with
+adaptive steps the last ones, which led to the earlier end, are repeated). output may change: every and times apply from
+there on, and a vtu of another name begins there. A file that does not fit (another tau, mesh, variant or build of the
+program) or is damaged is an error before the first step, and is left unchanged. The checkpoint from which a run has resumed
+is kept as run.checkpoint.previous.
 SIGINT and SIGTERM stop a run after the step in progress: it writes its checkpoint and what it has computed, with "status":
 "stopped by signal SIGINT at t = ..", and ends with exit code 2, since it is not done. A second signal ends it at once.)";
 }

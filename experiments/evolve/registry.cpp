@@ -30,7 +30,7 @@ const Entry& entry_named(const std::string& flow, const std::string& problem, co
   if (flows.count(flow) == 0)
     throw InputError(source + ": found flow = \"" + flow + "\"; expected one of " + listed(flows));
   if (problems == std::set<std::string>{""})
-    throw InputError(source + ": flow " + flow + " has none; expected no key problem");
+    throw InputError(source + ": flow " + flow + " has no problems; expected no key problem");
   throw InputError(source + ": found problem = \"" + problem + "\"; expected one of " + listed(problems));
 }
 

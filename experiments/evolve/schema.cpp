@@ -73,9 +73,9 @@ json common_properties() {
   };
   const json mesh = {
       {"file", described(text, "a mesh file")},
-      {"remesh", described(positive, "flat triangles made anew with edges of about this length")},
+      {"remesh", described(positive, "replaces flat triangles by new ones with edges of about this length")},
       {"curve",
-       {{"description", "nodes on a smooth surface through the corners"},
+       {{"description", "puts the nodes on a smooth surface through the corners"},
         {"anyOf", {{{"type", "boolean"}}, object_of({{"feature_angle", {{"type", "number"}}}})}}}},
       {"edge_length", described(positive, "largest edge of a generated mesh")},
       {"subdivisions", described(integer(0, 10), "of an icosahedron")}};
@@ -86,7 +86,7 @@ json common_properties() {
   const json output = {{"nodal", described(text, "nodal values at the end, JSON")},
                        {"series", described(text, "what is recorded of each step, JSON")},
                        {"vtu", described(text, "snapshots for ParaView, .pvd")},
-                       {"checkpoint", described(text, "the same command goes on from it")},
+                       {"checkpoint", described(text, "the same command resumes from it")},
                        {"every", described(integer(0, 100000000), "snapshots at every n-th step")},
                        {"times", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
   const json limits = {{"curvature_size", positive},

@@ -63,8 +63,8 @@ void check_normals(const EvolveConfig& config, const Field& nu) {
   }
   if (!(along > 0.5 * area))
     throw InputError(
-        format("mesh: nu of the file is no outward normal, nu . n is %.3g in the mean over the "
-               "surface, about 1 expected",
+        format("mesh: nu of the file is not the outward normal, the mean of nu . n over the "
+               "surface is %.3g, about 1 expected",
                along / area));
 }
 

@@ -53,7 +53,7 @@ Entry willmore_entry(Variant::Law law) {
        "nu_h to unit length, z_h to the tangent plane, in the nodes after each step"},
       {Key::truth, "theta", nullptr, "the correction (3.7); default: true with a \"surface\", false without"},
       {Key::not_negative, "relaxation", 0,
-       "1/time, towards the geometry of the surface; times tau at most 0.2"},
+       "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau"},
       reinitialise_key()};
   entry.run = [law](const Run& run) {
     WillmoreStart start = willmore_start(run, law);

@@ -47,7 +47,7 @@ void require_same(const std::string& name, const Point& one, const Point& other)
     const auto found = other.find(axis);
     if (found == other.end() || found->second != value)
       throw InputError(option_of(axis) + ": found several values for the run " + name +
-                       ", expected one: no label tells its rows apart");
+                       ", expected one: no label distinguishes its rows");
   }
 }
 

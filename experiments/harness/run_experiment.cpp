@@ -71,7 +71,7 @@ std::vector<Cell> checked_cells(const Experiment& experiment, const Options& opt
   static const std::regex file_name("[A-Za-z0-9_.+-]+");
   std::vector<Cell> cells = experiment.cells(options);
   if (cells.empty())
-    throw InputError("no cell is left of the grid; expected --levels and --steps that select some");
+    throw InputError("the grid has no such cell; expected --levels and --steps that select some");
   std::set<std::string> seen;
   for (const Cell& cell : cells)
     if (!std::regex_match(cell.name, file_name) || !seen.insert(cell.name).second)

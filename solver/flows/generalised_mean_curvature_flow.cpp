@@ -58,7 +58,7 @@ void GeneralisedMeanCurvatureFlow::assemble_weighted_mass() {
   space_.assemble_weighted_mass<1>(x_tilde_, u_tilde_.col(3), weight, D_);
   if (is_beyond)
     throw SingularityError(format(
-        "V is %g in a point of the surface, where the law with power %g has V %s 0 only: H is not positive "
+        "V is %g at a point of the surface, but the law with power %g requires V %s 0: H is not positive "
         "there, or the mesh does not resolve it",
         beyond, law_.power(), law_.power() > 0 ? ">" : "<"));
 }

@@ -60,7 +60,7 @@ void PhaseSeparation::take_small_steps(const State& start, State& next) {
       past.push(next);
       tau *= 2;
     } else if (tau < smallest_step * std::pow(epsilon_, 3)) {
-      throw NumericsError(format("the energy rises in a step of size %g, too: expected it to fall", tau));
+      throw NumericsError(format("the energy rises even in a step of size %g: expected it to decrease", tau));
     } else {
       tau /= 2;
     }

@@ -95,8 +95,7 @@ void SymmetricFactor<T, b>::place_fronts() {
       const std::ptrdiff_t size = planes * place.stride * n;
       if (size > std::numeric_limits<int>::max())
         throw NumericsError(
-            format("factorisation of %d unknowns: %d of them depend on each other all at once, which is too "
-                   "many",
+            format("factorisation of %d unknowns: %d of them form one dense block, which is too large",
                    unknowns(), m));
       panels_size_ += size;
       place.update = top[parity];
@@ -268,7 +267,7 @@ template <class T, int b>
 void SymmetricFactor<T, b>::require_factor(Eigen::Index rows) const {
   if (rows != unknowns())
     throw InputError(format("right-hand side has %td rows, expected %d", rows, unknowns()));
-  if (!factorised_) throw NumericsError("nothing is factorised to solve with");
+  if (!factorised_) throw NumericsError("no factors to solve with: call factorise() before solve()");
 }
 
 template <class T, int b>

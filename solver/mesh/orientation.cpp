@@ -46,13 +46,12 @@ std::vector<int> reach(const Mesh& mesh, const MeshOrigin& origin, const std::ve
         against[other] = expected;
         elements.push_back(other);
       } else if (against[other] != expected) {
-        throw InputError(
-            origin.source + ": " + origin.element(other) +
-            ": not orientable, a way on the surface "
-            "that ends at " +
-            origin.element(elements[k]) +
-            " comes back from the other side (as on a Möbius strip or a Klein bottle), a surface "
-            "with an inside expected");
+        throw InputError(origin.source + ": " + origin.element(other) +
+                         ": not orientable, a path on the surface "
+                         "that ends at " +
+                         origin.element(elements[k]) +
+                         " returns on the other side (as on a Möbius strip or a Klein bottle), a surface "
+                         "with an inside expected");
       }
     }
   return elements;

@@ -130,7 +130,7 @@ bool Checkpoint::read(const std::function<std::string(const json&)>& restore) {
     if (!content.is_object()) throw InputError("it is damaged, or no checkpoint");
     const std::string other = other_run(content.at("identity"), identity_);
     if (!other.empty()) throw InputError("it is of " + other);
-    say_(file_ + ": the run goes on from this checkpoint, " + restore(content.at("run")));
+    say_(file_ + ": the run resumes from this checkpoint, " + restore(content.at("run")));
     return true;
   } catch (const json::exception& error) {
     why = error.what();
@@ -139,7 +139,7 @@ bool Checkpoint::read(const std::function<std::string(const json&)>& restore) {
   }
   why = file_ + ": this checkpoint cannot be used: " + why;
   if (!starts_afresh_)
-    throw InputError(why + "; it stays as it is: remove it, or name another one, to start at t = 0");
+    throw InputError(why + "; it is left unchanged: remove it, or name another file, to start at t = 0");
   say_(why + "; the run starts at t = 0");
   return false;
 }

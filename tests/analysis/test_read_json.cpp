@@ -87,7 +87,7 @@ TEST_F(ReadJson, DeepNestingIsRefused) {
     return open + "1" + std::string(close.rbegin(), close.rend());
   };
   EXPECT_TRUE(read(nested(100)).is_object());
-  EXPECT_THAT(complaint(nested(101)), HasSubstr("more than 100 arrays and objects in each other"));
+  EXPECT_THAT(complaint(nested(101)), HasSubstr("more than 100 nested arrays and objects"));
   EXPECT_THAT(complaint(nested(1000000)), HasSubstr("more than 100"));
 }
 

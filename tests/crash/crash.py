@@ -222,7 +222,7 @@ class Crash:
         """The run ends with this code and one line that has these words."""
         found = self.evolve_in(folder)
         expect(found == code, f"exit code {found}, {code} expected: {self.said}")
-        lines = [line for line in self.said.splitlines() if "goes on from this checkpoint" not in line]
+        lines = [line for line in self.said.splitlines() if "resumes from this checkpoint" not in line]
         expect(len(lines) == 1, f"one line expected: {self.said}")
         expect(all(word in lines[0] for word in words), f"{words} expected: {lines[0]}")
 
@@ -244,7 +244,7 @@ class Crash:
             expect(content(checkpoint) == damaged, "the damaged file is not left as it is")
             expect(self.results(folder) == before, "a refused run has written something")
         checkpoint.write_bytes(good)
-        expect(self.evolve_in(folder) == 0 and "goes on from" in self.said, "the good file is not taken any more")
+        expect(self.evolve_in(folder) == 0 and "resumes from" in self.said, "the good file is not taken any more")
         return f"{len(lengths)} cuts of {size} bytes, {len(bad) - len(lengths)} flipped bits"
 
     def part_disk(self, folder):
@@ -262,7 +262,7 @@ class Crash:
                 codes.append(code)
                 if code != 0:
                     count += 1
-                    lines = [line for line in self.said.splitlines() if "goes on from this" not in line]
+                    lines = [line for line in self.said.splitlines() if "resumes from this" not in line]
                     expect(code == 1 and len(lines) == 1 and "No space left" in lines[0], f"exit code {code}: {self.said}")
                 (disk / "filler").unlink()
                 expect(not temporary_files(disk), f"{temporary_files(disk)} are left")

@@ -119,10 +119,9 @@ TEST(Choices, ARunOfTwoBlocksIsOneRun) {
 }
 
 TEST(Choices, RunsThatNoLabelTellsApartAreRefused) {
-  EXPECT_EQ(
-      refusal(sample(), given({{"gamma", {2.0, 3.0}}, {"level", 0}, {"step", 1}})),
-      "--gamma: found several values for the run one_bdf3_h0_tau1, expected one: no label tells its rows "
-      "apart");
+  EXPECT_EQ(refusal(sample(), given({{"gamma", {2.0, 3.0}}, {"level", 0}, {"step", 1}})),
+            "--gamma: found several values for the run one_bdf3_h0_tau1, expected one: no label "
+            "distinguishes its rows");
 }
 
 TEST(Choices, TheGridSaysWhichCombinationsAreRuns) {

@@ -270,7 +270,7 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"adaptive", {{"end_time", 1}, {"tolerance", 0}}}, {"tau", nullptr}, {"steps", nullptr}},
        "tolerance = 0"},
       {{{"adaptive", {{"end_time", 1e-7}, {"first_step", 1e-6}}}, {"tau", nullptr}, {"steps", nullptr}},
-       "first_step = 1e-06, which is not controlled"},
+       "expected first_step < end_time"},
       {{{"adaptive", {{"end_time", 1}}}, {"tau", nullptr}, {"steps", nullptr}, {"bdf", 3}},
        "bdf = 3; expected 1 to 2"},
       {{{"flow", "willmore"}, {"variant", {{"F", "explicit"}}}}, "extrapolated, implicit"},

@@ -115,7 +115,7 @@ TEST_F(EvolveRestart, AFullDiskLosesNothingElse) {
   if (!fs::is_character_file("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
   EXPECT_EQ(run(with_output({{"series", "/dev/full"}, {"checkpoint", checkpoint}})), exit_usage);
   EXPECT_THAT(message, AllOf(HasSubstr("/dev/full: cannot be written: No space left"),
-                             HasSubstr("the same command goes on from " + checkpoint)));
+                             HasSubstr("the same command resumes from " + checkpoint)));
   EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 1) << message;
   EXPECT_EQ(read_json(nodal).at("t"), 0.04);
   ASSERT_EQ(run(with_output({{"checkpoint", checkpoint}})), exit_done) << message;
@@ -126,7 +126,7 @@ TEST_F(EvolveRestart, ProlongsAFinishedRun) {
   const json expected = results_without_checkpoint({{"steps", 9}});
   ASSERT_EQ(run(with_output({{"checkpoint", checkpoint}})), exit_done) << message;
   ASSERT_EQ(run(with_output({{"checkpoint", checkpoint}}, {{"steps", 9}})), exit_done) << message;
-  EXPECT_THAT(message, HasSubstr("run.checkpoint: the run goes on from this checkpoint, step 4, t = 0.04"));
+  EXPECT_THAT(message, HasSubstr("run.checkpoint: the run resumes from this checkpoint, step 4, t = 0.04"));
   EXPECT_EQ(results(), expected);
 }
 
@@ -144,7 +144,7 @@ TEST_F(EvolveRestart, ProlongsAFinishedRunWithAdaptiveSteps) {
     ASSERT_EQ(run(with_output({{"checkpoint", checkpoint}}, until(0.01))), exit_done) << message;
     EXPECT_EQ(read_json(nodal).at("t"), 0.01);
     ASSERT_EQ(run(with_output({{"checkpoint", checkpoint}}, until(0.03))), exit_done) << message;
-    EXPECT_THAT(message, HasSubstr("goes on from this checkpoint"));
+    EXPECT_THAT(message, HasSubstr("resumes from this checkpoint"));
     EXPECT_EQ(results(), expected) << flow;
   }
 }
@@ -184,7 +184,7 @@ TEST_F(EvolveRestart, TheNameOfTheMeshFileDoesNotMatter) {
   ASSERT_EQ(run(from(mesh, 3)), exit_done) << message;
   fs::copy_file(mesh, path("renamed.msh"));
   ASSERT_EQ(run(from(path("renamed.msh"), 4)), exit_done) << message;
-  EXPECT_THAT(message, HasSubstr("goes on from this checkpoint"));
+  EXPECT_THAT(message, HasSubstr("resumes from this checkpoint"));
 }
 
 TEST_F(EvolveRestart, SaysWhyACheckpointDoesNotServeAndLeavesIt) {
@@ -244,7 +244,7 @@ TEST_F(EvolveRestart, ASignalStopsItAfterTheStepAndItGoesOn) {
     EXPECT_EQ(WEXITSTATUS(status), exit_numerics);
     const std::string name = number == SIGTERM ? "SIGTERM" : "SIGINT";
     EXPECT_THAT(bytes(path("errors.txt")), AllOf(HasSubstr("stopped by signal " + name + " at t = "),
-                                                 HasSubstr("goes on from " + checkpoint)));
+                                                 HasSubstr("resumes from " + checkpoint)));
     const json stopped = read_json(series);
     EXPECT_THAT(stopped.at("status").get<std::string>(), HasSubstr("stopped by signal " + name));
     const int done = static_cast<int>(stopped.at("t").size()) - 1;

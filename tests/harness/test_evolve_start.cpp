@@ -141,7 +141,7 @@ TEST_F(EvolveStart, RefusesNodalValuesThatCannotBeRight) {
               length == 1 ? exit_done : exit_usage)
         << message;
     EXPECT_THAT(message, HasSubstr(length == 1  ? "H, nu from the mesh file"
-                                   : length < 0 ? "nu of the file is no outward normal"
+                                   : length < 0 ? "nu of the file is not the outward normal"
                                                 : "nu of the file has length 0.2 at node 10,"));
   }
 }

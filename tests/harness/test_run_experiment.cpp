@@ -110,7 +110,7 @@ TEST_F(RunExperiment, BadCommandLinesGetOneLineWithWhatIsAcceptedAndExit1) {
   }
 }
 
-TEST_F(RunExperiment, ListsTheDearestCellFirst) {
+TEST_F(RunExperiment, ListsTheMostExpensiveCellFirst) {
   const Outcome list = run("--list --preset check");
   EXPECT_EQ(list.exit_code, 0);
   EXPECT_EQ(list.out, "h1_tau1 8.00\nh1_tau0 4.00\nh0_tau1 2.00\nh0_tau0 1.00\n");

@@ -193,7 +193,7 @@ TEST(BlockSolver, SaysWhatIsWrong) {
   const Blocks of(1), other(2);
   BlockSolver solver(of.space.pattern());
   Field u = of.r, w = of.s;
-  EXPECT_THAT([&] { solver.solve(u, w); }, ThrowsMessage<NumericsError>(HasSubstr("nothing is factorised")));
+  EXPECT_THAT([&] { solver.solve(u, w); }, ThrowsMessage<NumericsError>(HasSubstr("call factorise()")));
   EXPECT_THAT([&] { solver.factorise(1, -1, 1, of.M, of.A); },
               ThrowsMessage<InputError>(HasSubstr("1, -1, 1")));
   EXPECT_THAT([&] { solver.factorise(1, 1, 1, other.M, other.A); },

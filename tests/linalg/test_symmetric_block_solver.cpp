@@ -88,7 +88,7 @@ TEST(SymmetricBlockSolver, SaysWhatIsWrong) {
   const Blocks of(1, 1), other(2, 1);
   SymmetricBlockSolver solver(of.space.pattern());
   Field u = of.r, w = of.s;
-  EXPECT_THAT([&] { solver.solve(u, w); }, ThrowsMessage<NumericsError>(HasSubstr("nothing is factorised")));
+  EXPECT_THAT([&] { solver.solve(u, w); }, ThrowsMessage<NumericsError>(HasSubstr("call factorise()")));
   EXPECT_THAT([&] { solver.factorise(of.P, other.Q, of.R); },
               ThrowsMessage<InputError>(HasSubstr("pattern")));
   SymmetricMatrix bad = of.R;

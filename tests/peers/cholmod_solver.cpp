@@ -149,7 +149,7 @@ void CholmodSolver::solve(Field& rhs) {
   if (rhs.rows() != c.pattern->size)
     throw InputError(
         format("right-hand side has %d rows, expected %d", static_cast<int>(rhs.rows()), c.pattern->size));
-  if (!c.factorised) throw NumericsError("nothing is factorised to solve with");
+  if (!c.factorised) throw NumericsError("no factors to solve with: call factorise() before solve()");
   cholmod_dense right = {};
   right.nrow = right.d = rhs.rows();
   right.ncol = rhs.cols();

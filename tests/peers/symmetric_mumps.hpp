@@ -79,7 +79,7 @@ class SymmetricMumps {
   /// Solves for all columns of the right-hand sides at once, in place. Throws NumericsError when nothing is
   /// factorised.
   void solve(Scalar* right, int columns) {
-    if (!factorised_) throw NumericsError("nothing is factorised to solve with");
+    if (!factorised_) throw NumericsError("no factors to solve with: call factorise() before solve()");
     instance_.rhs = as_mumps(right);
     instance_.nrhs = columns;
     instance_.lrhs = instance_.n;

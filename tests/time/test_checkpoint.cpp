@@ -154,7 +154,7 @@ TEST_F(CheckpointedRun, GoesOnBitForBit) {
     ASSERT_TRUE(fs::exists(file));
     const Seen resumed = uniform();
     EXPECT_EQ(resumed.first, stop);
-    EXPECT_THAT(resumed.said, HasSubstr(format("goes on from this checkpoint, step %d", stop - 1)));
+    EXPECT_THAT(resumed.said, HasSubstr(format("resumes from this checkpoint, step %d", stop - 1)));
     expect_same(resumed, whole);
   }
 }
