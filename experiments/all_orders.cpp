@@ -9,11 +9,11 @@
 // Writes:       results/paper/all_orders.{json,csv,tex}, from which plots/all_orders.py draws
 //               figures/gallery/all_orders
 //
-// Orders in h and in tau are measured apart, so that they do not hide each other:
+// Orders in h and in tau are measured separately, so that they do not hide each other:
 //   space  errors against the exact solution at the end, on three meshes, h halved in all, exact starting
-//          values (Ritz maps and theta for Cahn-Hilliard, theta for Willmore flow). A run with 2 tau beside
-//          it tells how much of an error the steps make: where it is more than a fifth, it is hidden, and
-//          there is no order.
+//          values (Ritz maps and theta for Cahn-Hilliard, theta for Willmore flow). A second run with 2 tau
+//          shows which part of an error is caused by the steps: if it is more than a fifth, the error in
+//          space is hidden, and there is no order.
 //   time   largest errors against small steps on the same coarse mesh, three step sizes. The small steps give
 //          the starting values, some time after t = 0: by then the fast modes that interpolated initial
 //          values contain have died out.
@@ -24,13 +24,13 @@
 // |nu_h| leaves 1, like exp(100t) at the hole), in time of an ellipsoid; bk22's evolving ellipsoid.
 //
 // Expected: q in tau; k in h in H1 (kll19 Theorem 6.1, nick18 Theorem 2.1, kll21 Theorem 4.1 for k >= 2, bk22
-// Theorem 4.1 for k >= 1), k + 1 in L2. All of it comes out, for k = 1 and q = 1, too. Higher orders than
+// Theorem 4.1 for k >= 1), k + 1 in L2. All of it is observed, also for k = 1 and q = 1. Higher orders than
 // expected: positions and velocity of the growing sphere in h when k is even, and Willmore flow with k = 4 on
 // these coarse meshes (slopes 6.1, 5.0); those of BDF4 and 5 fall towards 4 and 5 with tau.
 //
 // Dziuk's scheme is unstable with BDF4 and 5 unless tau/h² is small (dziuk_flow.hpp), so that coarse meshes
-// pass for stable at large and at very small tau. BDF1 shows 0.5 to 0.8 of its order in H1, 1 in L2: fast
-// tangential modes are still on their way. In space its positions have order 1.0 to 1.4 in H1 with k = 2, 2.4
+// seem stable at large and at very small tau. BDF1 shows 0.5 to 0.8 of its order in H1, 1 in L2: fast
+// tangential modes have not decayed yet. In space its positions have order 1.0 to 1.4 in H1 with k = 2, 2.4
 // with k = 3.
 //
 // With nu_h and z_h projected after each step Willmore flow on the Clifford torus is unstable with BDF5 for

@@ -20,7 +20,7 @@
 // equation: the runs ritz_theta, of which the errors are maxima over all n >= 0. The text of §9 starts from
 // nodal interpolations and does not mention theta: the runs interpolation, where w(0) has to come from the
 // second equation and does not converge; their errors are maxima over n >= q. All runs have the errors at
-// the start apart, as u_initial and w_initial.
+// the start separately, as u_initial and w_initial.
 //
 // Beside the published runs: BDF 2, 4 and 5; quadratic elements; the orders of BDF 1 to 5 against a solution
 // of the same discretisation with small steps; the errors of d•u that Theorem 4.1 bounds, in L2 over time;
@@ -28,8 +28,9 @@
 //
 // Expected orders (Theorem 4.1 and the BDF methods): tau^q + h^k in H1, one more in h in L2. The nodal H1
 // errors, of the difference to the interpolated solution, are better than O(h): those of w least, because
-// maxima over n >= 0 contain how far Ritz maps are from interpolations. BDF5 amplifies what Ritz maps as
-// starting values are off the discrete solution (w 0.030 at tau = 0.025 on 2,491 nodes; BDF4 0.004).
+// maxima over n >= 0 contain how far Ritz maps are from interpolations. BDF5 amplifies the difference
+// of Ritz maps as starting values from the discrete solution (w 0.030 at tau = 0.025 on 2,491 nodes; BDF4
+// 0.004).
 #include <cmath>
 #include <deque>
 

@@ -13,11 +13,12 @@
 // d•u + u div v = Lap w, w = -epsilon Lap u + (u³ - u)/epsilon with epsilon = 0.1 on {x1²/a(t) + x2² + x3² =
 // 1}, a(t) = 1 + 0.25 sin(10 pi t), from u = 0.1 cos(2 pi x1) cos(2 pi x2) cos(2 pi x3): bk22 (8.3) with
 // linear elements, without theta, from the interpolated u, with BDF2 and tau = 1e-4. The setting is that of
-// Elliott and Ranner (2015), §6.2, who use the linearly implicit Euler method: BDF1 stands beside.
+// Elliott and Ranner (2015), §6.2, who use the linearly implicit Euler method, so there are runs with BDF1,
+// too.
 //
 // Expected: the energy does not fall monotonically, because the surface grows and shrinks: it rises until t =
 // 0.009 and again from t = 0.153 on. It tends to a function of time with the period of the surface, 0.2, from
-// 2,500 nodes on; longer edges than epsilon lead elsewhere. The integral of u stays what it is, to round-off.
+// 2,500 nodes on; with edges longer than epsilon to another one. The integral of u is constant to round-off.
 #include <algorithm>
 #include <cmath>
 #include <optional>

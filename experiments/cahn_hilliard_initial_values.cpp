@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// What the initial values and the correction theta of (3.13) do to the Cahn-Hilliard equation on an evolving
-// ellipsoid (bk22 §9.3, Figure 8)
+// Effect of the initial values and of the correction theta of (3.13) on the Cahn-Hilliard equation on an
+// evolving ellipsoid (bk22 §9.3, Figure 8)
 //
 // Sample runs:  build/bin/cahn_hilliard_initial_values --preset check --output initial_values.json
 //               build/bin/cahn_hilliard_initial_values --initial ritz,interpolation_theta --levels 1
@@ -20,8 +20,8 @@
 //   unit      1/226.7724255776, for which max |u| = 1 as the paper says
 //   printed   225/56693, for which it is 0.9
 // The paper does not say what epsilon is here; 0.5 is that of its convergence tests, whose interfaces
-// (thickness about 3 epsilon) the elements of the published mesh (edges up to 0.38) can resolve. Those of
-// 0.1, as in §9.2, they cannot.
+// (thickness about 3 epsilon) the elements of the published mesh (edges up to 0.38) can resolve. They
+// cannot resolve those of 0.1, as in §9.2.
 //
 // Expected: both solutions look alike, u differs by 0.4% with 4,098 nodes, and by O(h²); but w(0) from the
 // second equation does not converge in all nodes.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Spinodal decomposition on a sphere (PFHub benchmark 1d): the energies that others have published, and what
-// they owe to the mesh and to the steps
+// Spinodal decomposition on a sphere (PFHub benchmark 1d): the published energies, and how they depend on
+// the mesh and on the steps
 //
 // Sample runs:  build/bin/cahn_hilliard_pfhub --preset check --output pfhub.json
 //               build/bin/cahn_hilliard_pfhub --degree 2 --levels 0-2 --end_time 300
@@ -16,14 +16,14 @@
 // (solver/flows/linearised_cahn_hilliard.hpp). Stepping:
 //   adaptive  BDF2, steps from 0.01 on that follow c, as far as t = 1.5e5
 //   moose     backward Euler with Newton's method and the steps of the published run until its third time:
-//             1, 1.1, .., 1.1^4, and then 15 of 1.1^5. Its times tell them: 6.1051 = 1 + .. + 1.1^4, and
-//             14.158 and 30.263 come 5 and 15 steps of 1.1^5 later.
+//             1, 1.1, .., 1.1^4, and then 15 of 1.1^5. They follow from its times: 6.1051 = 1 + .. + 1.1^4,
+//             and 14.158 and 30.263 come 5 and 15 steps of 1.1^5 later.
 //
-// Where linear elements have become steady the run goes on with quadratic ones on the same triangles.
+// When a run with linear elements has become steady, it continues with quadratic ones on the same triangles.
 //
-// Expected: with its steps, its energies to 3%; with small steps the decomposition comes 3 time units later.
-// The steady states of 3,000 and 6,000 linear nodes are those of their meshes: an interface is 2 sqrt 5 = 4.5
-// wide, and edges of 5 or 7 pin it. On quadratic elements coarsening goes on.
+// Expected: with its steps, its energies to 3%; with small steps the decomposition is 3 time units later.
+// The steady states with 3,000 and 6,000 linear nodes are caused by the meshes: an interface is 2 sqrt 5
+// = 4.5 wide, and edges of 5 or 7 pin it. On quadratic elements coarsening continues.
 #include <algorithm>
 #include <cmath>
 

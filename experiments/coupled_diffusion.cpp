@@ -176,8 +176,8 @@ int main(int argc, char** argv) {
   experiment.paper = "nick18";
   experiment.help =
       "A growing sphere whose velocity is coupled to diffusion on it (nick18 Figures 1 to 5): errors of "
-      "position x, "
-      "velocity v and\nu at t = 1 over step size and mesh width. Step sizes 0.1 2^-k, k = 0, 1, ..; edge "
+      "position x, velocity v and\nu at t = 1 over step size and mesh width. Step sizes 0.1 2^-k, k = 0, 1, "
+      "..; edge "
       "lengths 0.378 2^(-j/2), level j =\n0, 1, .. No units: alpha = beta = D = 1.\n\n"
       "Example: coupled_diffusion --levels 0-2 --steps 1-4 --output table.json";
   experiment.grid.axes = {
@@ -186,8 +186,7 @@ int main(int argc, char** argv) {
         "order"},
        "convergence: (2.19) with g coupled additively | quotient: as printed | none: not coupled | "
        "extrapolation: as (2.18) prints it | difference: (7.2) minus (2.19) | cost: run time of (7.2) | "
-       "growth: of "
-       "an error in u | dynamic: dynamic velocity law | order: errors against small steps"}};
+       "growth: of an error in u | dynamic: dynamic velocity law | order: errors against small steps"}};
   experiment.grid.labels = {"run", "bdf"};
   experiment.grid.otherwise = otherwise;
   experiment.grid.preset = preset;

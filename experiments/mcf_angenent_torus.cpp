@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
 // Mean curvature flow of the self-shrinking torus: convergence in time and space to an exact solution that is
-// no sphere
+// not a sphere
 //
 // Sample runs:  build/bin/mcf_angenent_torus --preset check --output torus.json
 //               build/bin/mcf_angenent_torus --flow mean_curvature --degree 3 --levels 0-1 --steps 2
@@ -16,12 +16,12 @@
 // and cubic elements, tau = 0.02 2^-k, on grids that are uniform in arclength and angle, and on unstructured
 // meshes.
 //
-// Runs "order" measure BDF 1 to 5 on [0.1, 0.2] against the same discretisation with steps of a quarter,
-// because the error in space hides that in time.
+// Runs "order" measure BDF 1 to 5 on [0.1, 0.2] against the same discretisation with a quarter of the step
+// size, because the error in space hides that in time.
 //
 // Expected orders (kll19 Theorem 6.1): tau^q + h^k in L^infinity(H1) for x, v, nu, H, one more in h in L2. On
-// the sphere all four superconverge in space, and nu has no error in time; here these orders are what one
-// sees.
+// the sphere all four superconverge in space, and nu has no error in time; here these orders are
+// observed.
 #include <cmath>
 
 #include "experiments/harness/grid_experiment.hpp"

@@ -12,14 +12,14 @@
 // The sphere of radius 2 on [0, 0.6] and the self-shrinking torus on [0, 0.2], whose solutions are known. All
 // schemes run on the same meshes with quadratic elements, (5.1) and Dziuk's with BDF 1 to 3 and exact
 // starting values, BGN's, which is of first order, also with linear elements and lumped masses, as published.
-// Seconds are those of the processor in the steps alone; errors are recorded at about 12 times in between.
+// Seconds are the CPU time of the steps alone; errors are recorded at about 12 times during the run.
 // The nodes of BGN's scheme slide along the surface, which counts as an error of x; `distance` is that of the
-// nodes from the exact surface (root mean square), the greatest of those recorded.
+// nodes from the exact surface (root mean square), the largest recorded value.
 //
 // Expected: BGN's scheme, of order 1 in time and with a system for four unknowns a node, is the least
-// accurate per second. Between the others it depends on what one asks for. Dziuk's steps take half as long.
-// Its nodes keep as near to the surface, on the sphere even nearer; but where the mesh is not that of a
-// sphere they slide, and its normals and curvatures, those of the discrete surface, are 10 to 100 times less
+// accurate per second. Between the others it depends on the quantity. Dziuk's steps take half as long.
+// Its nodes stay as close to the surface, on the sphere even closer; but if the surface is not a sphere
+// they slide, and its normals and curvatures, those of the discrete surface, are 10 to 100 times less
 // accurate.
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Mean curvature flow of a dumbbell up to its pinch singularity: several algorithms side by side (kll19
+// Mean curvature flow of a dumbbell up to its pinch singularity: comparison of several algorithms (kll19
 // §13.2, Figures 13.3 to 13.6)
 //
 // Sample runs:  build/bin/mcf_dumbbell --preset check --output dumbbell.json
@@ -16,8 +16,8 @@
 // 0.082233 (reference/independent/dumbbell_axisymmetric.json). The methods are Dziuk's scheme (3.6), (5.1),
 // (5.1) with normalised nu_h, (5.1) with the stabilising term of §14, (5.1) with v_h by interpolation, and
 // the scheme of Barrett, Garcke and Nürnberg (2008). The paper's setting is about 10,522 nodes, BDF2 started
-// by one backward Euler step, tau = 0.003; a good start by substeps and smaller tau show what is due to the
-// method itself. A run ends by itself at the singularity (geometry/regularity.hpp).
+// by one backward Euler step, tau = 0.003; accurate starting values by substeps and smaller tau show which
+// effects are due to the method itself. A run ends at the singularity (geometry/regularity.hpp).
 //
 // Expected: all methods pinch at T* as tau and h go to 0; no orders are measured here.
 #include <algorithm>

@@ -12,9 +12,9 @@
 //
 // The sphere of radius R_0 = 2 shrinks by v = -H nu on [0, 0.6], R(t) = sqrt(R_0² - 4t). The discretisation
 // is (5.1): quadratic evolving surface finite elements and BDF3, exact starting values, tau = 0.2 2^-k and h
-// near 0.5 2^(-j/2). Beside it, in the same table, runs Dziuk's scheme (3.6), with nu and H from kappa = M^-1
-// A x; and, one or a few cells each, what the paper says or assumes of starting values and of the
-// price of a step, Dziuk's scheme with BDF4, and the growth of an error in |nu_h|.
+// near 0.5 2^(-j/2). The same table contains Dziuk's scheme (3.6), with nu and H from kappa = M^-1 A x; and,
+// with one or a few cells each, the paper's statements on starting values and on the cost of a step, Dziuk's
+// scheme with BDF4, and the growth of an error in |nu_h|.
 //
 // Expected orders (Theorem 6.1): tau³ + h² in L^infinity(H1) for x, v, nu, H. On the sphere all four
 // superconverge in space (order 3 in H1, 4 for H), and nu shows no order in time, because it is constant

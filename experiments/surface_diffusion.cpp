@@ -11,20 +11,20 @@
 //               results/paper/cells/surface_diffusion/CELL/surfaces.pvd
 //
 // The ellipsoid with half axes 2, 1, 1 evolves by V = Delta H on [0, 0.8]: kll21 (3.4)-(3.5) with Q = 0,
-// quadratic elements and BDF2. It is the longer one of the two that willmore_relaxation has, (1, 1, 0.6)
-// being round to the eye from the start. The volume is constant, the area decreases, and the limit is the
+// quadratic elements and BDF2. It is the longer one of the two of willmore_relaxation; (1, 1, 0.6) looks
+// round from the start. The volume is constant, the area decreases, and the limit is the
 // sphere of radius 2^(1/3). Close to a sphere of radius R the ellipsoidal modes decay by exp(-24 t/R⁴).
 // Settings:
 //   paper        tau = 0.01 2^-k, projections after each step (§7.1)
 //   unprojected  the same without projections
 //   adaptive     adaptive BDF2, tau from 1e-6 to 0.008, tolerance 1e-3
-//   accurate     the same with tau <= 0.00125, tolerance 2.5e-5: what is left is the error in space
+//   accurate     the same with tau <= 0.00125, tolerance 2.5e-5: the remaining error is that in space
 //   relaxed      as adaptive, with the relaxation lambda = 100 of H_h and nu_h towards the geometry
 //
 // Expected: the scheme conserves int V = 0, not the volume, because nu_h is not the normal of Gamma_h. The
 // volume drifts with tau² and, in space, faster than h². Without projections |nu_h| grows, and the drift
-// is 30 times as large. The surface stops when H_h is constant, which it is before it is round; with the
-// relaxation it becomes round at the rate of the theory.
+// is 30 times as large. The surface stops when H_h is constant, which happens before it is round; with
+// the relaxation it becomes round at the rate of the theory.
 #include <cmath>
 
 #include "experiments/harness/grid_experiment.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Growth of a tumour: a surface that is moved by what reacts and diffuses on it, without a formula for either
+// Growth of a tumour: surface evolution coupled to reaction and diffusion on the surface, without an exact
+// solution
 //
 // Sample runs:  build/bin/tumour_growth --preset check --output tumour.json
 //               build/bin/tumour_growth --levels 0 --steps 1 --gamma 100
@@ -14,8 +15,8 @@
 // (2.19)-(2.21) with quadratic elements and BDF2. It starts from the steady state without space, disturbed by
 // at most 1%, by the same function of space on every mesh.
 //
-// Expected: the steady state is unstable (Turing), a pattern appears, and the sphere loses its shape. No
-// orders.
+// Expected: the steady state is unstable (Turing), a pattern appears, and the surface does not remain a
+// sphere. No orders.
 #include "solver/problems/tumour_growth.hpp"
 
 #include <cmath>

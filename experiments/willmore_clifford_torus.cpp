@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Willmore flow of the Clifford torus, which stays as it is: convergence in space, and how stable the
-// discretisations are (kll21 §7.1, Figure 7.4)
+// Willmore flow of the Clifford torus, which is stationary: convergence in space, and stability of the
+// discretisations (kll21 §7.1, Figure 7.4)
 //
 // Sample runs:  build/bin/willmore_clifford_torus --preset check --output torus.json
 //               build/bin/willmore_clifford_torus --triangulation graded --levels 0,1 --steps 2
@@ -19,7 +19,7 @@
 // Beside the published runs: with theta; BDF2; F(x, u) w implicit, which is unstable for tau from 0.025 to
 // 0.1.
 //
-// Expected orders (Theorem 4.1): h² in L^infinity(H1) for x, nu and H. There is no error in time but that of
+// Expected orders (Theorem 4.1): h² in L^infinity(H1) for x, nu and H. The only error in time is that of
 // the projections. The damping of BDF1 is needed: BDF2 does not reach t = 1 for tau from 0.0125 to 0.05, and
 // when tau is as small as 0.003 BDF1, too, lets errors grow on unstructured meshes, like exp(10t).
 #include <cmath>

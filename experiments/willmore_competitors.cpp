@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Willmore flow by three schemes side by side: kll21 (3.4)-(3.5), Dziuk's (2.13) of 2008, and that of
+// Willmore flow by three schemes: kll21 (3.4)-(3.5), Dziuk's (2.13) of 2008, and that of
 // Barrett, Garcke and Nürnberg of 2008, (2.14)
 //
 // Sample runs:  build/bin/willmore_competitors --preset check --output competitors.json
@@ -9,18 +9,18 @@
 // Writes:       results/paper/willmore_competitors.{json,csv,tex}, from which plots/willmore_competitors.py
 //               draws figures/gallery/willmore_competitors
 //
-// The unit sphere and the Clifford torus with radii 1 and 2^(-1/2) stay where they are, so that errors are
+// The unit sphere and the Clifford torus with radii 1 and 2^(-1/2) are stationary, so that errors are
 // known; an ellipsoid (1, 1, 0.6) becomes rounder. All schemes take backward Euler steps of the same size on
 // the same meshes, with elements of degree 1 and 2 (the theory of kll21 begins with 2). nu and H of the older
 // schemes, which have none or only H, are those of the discrete surface. The nodes of Dziuk's scheme and of
 // BGN's move along the surface, which counts as an error of x; `distance` is that of the nodes from the exact
-// surface. Energies are recorded 50 times a run. Linear elements on the sphere also on finer meshes: do the
-// schemes converge?
+// surface. Energies are recorded 50 times a run. Linear elements on the sphere are also run on finer meshes,
+// to see whether the schemes converge.
 //
-// Expected: the older schemes move to a discrete surface of smaller discrete energy, kll21 stays where it is,
-// nearer by a factor of 100 and more. Dziuk's scheme with elements of degree 2 needs tau <= h²/1000 or less,
-// the others do not. With linear elements BGN's nodes go on sliding by the same way in each step, however
-// small it is.
+// Expected: the older schemes move to a discrete surface of smaller discrete energy, kll21 remains
+// closer to the initial one by a factor of 100 and more. Dziuk's scheme with elements of degree 2 needs tau
+// <= h²/1000 or less, the others do not. With linear elements BGN's nodes keep sliding by the same distance
+// in each step, however small the step is.
 #include <cmath>
 #include <optional>
 

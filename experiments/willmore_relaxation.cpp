@@ -18,9 +18,9 @@
 //   adaptive  adaptive BDF2, tau from 1e-6 (1e-9) to 0.002, 0.005 or 0.008
 //   relaxed   the same with the relaxation lambda = 100 of H_h and nu_h towards the geometry of the surface
 //
-// Expected: on a sphere H_h - 2/R is conserved, so an error that the first 1e-3 time units leave in H_h
-// stays: W(H_h) levels off above 8 pi and the sphere shrinks for ever. Adaptive steps make that error small;
-// the relaxation removes it, and with it a mode of nu_h that grows on the torus whatever tau is.
+// Expected: on a sphere H_h - 2/R is conserved, so the error of H_h after the first 1e-3 time units
+// remains: W(H_h) levels off above 8 pi and the sphere shrinks for ever. Adaptive steps make that error
+// small; the relaxation removes it, and with it a mode of nu_h that grows on the torus whatever tau is.
 #include <cmath>
 
 #include "experiments/harness/grid_experiment.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Willmore flow of a sphere, which stays as it is: convergence in space, and what projections are for (kll21
+// Willmore flow of a sphere, which is stationary: convergence in space, and the effect of projections (kll21
 // §7.1, Figures 7.1 to 7.3)
 //
 // Sample runs:  build/bin/willmore_sphere --preset check --output sphere.json
@@ -18,8 +18,8 @@
 // (3.7), and after each step without and with projections of nu_h and z_h.
 //
 // Beside the published runs: with theta and projections the discrete sphere is stationary, too. The growth
-// of errors without projections on spheres of radius 1 and 1.5, until t = R⁴. Surface diffusion (1.2), which
-// leaves the sphere as it is, too.
+// of errors without projections on spheres of radius 1 and 1.5, until t = R⁴. Surface diffusion (1.2), for
+// which the sphere is stationary, too.
 //
 // Expected orders (Theorem 4.1): h² in L^infinity(H1) for x, nu and H. There is no error in time. Without
 // projections errors grow like exp(8t/R⁴).

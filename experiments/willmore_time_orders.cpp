@@ -9,8 +9,8 @@
 //
 // The ellipsoid with half axes 2, 2, 1.6 under Willmore flow, kll21 (3.4)-(3.5) with quadratic elements on
 // one mesh, BDF 1 to 4. Errors of x, u = (H, nu) and w = (V, z) against BDF5 with 1,024 steps on the same
-// mesh, which gives the starting values, too. Time counts from 0.1 on: what the interpolation of the exact
-// initial values leaves in the fast modes has died out then, and within that layer no method shows its order.
+// mesh, which gives the starting values, too. Errors are measured from t = 0.1 on: by then the fast modes
+// that the interpolated initial values contain have decayed; in that initial layer no method shows its order.
 //
 // Expected: order q of BDF q without projections. With nu_h and z_h projected after each step the order is
 // lost: about 0.4 is what remains, whatever q is.
