@@ -22,21 +22,21 @@ struct NumericsError : std::runtime_error {
   NumericsError at(int step, double t) const;
 };
 
-/// The computed solution ends here: a singularity is near, or its elements have degenerated. What was
-/// computed before is good; a run keeps it and says "singular at t = ...".
+/// The computed solution ends here: a singularity is near, or its elements have degenerated. Earlier results
+/// are valid; a run keeps them and reports "singular at t = ...".
 struct SingularityError : NumericsError {
   using NumericsError::NumericsError;
   SingularityError at(int step, double t) const;  ///< "singular at t = .. (step ..): .."
 };
 
-/// The surface shrinks to nothing: what was computed before is good, and there is nothing afterwards.
+/// The surface shrinks to a point: earlier results are valid, and there is no solution afterwards.
 struct ExtinctionError : NumericsError {
   using NumericsError::NumericsError;
   ExtinctionError at(int step, double t) const;  ///< the message, with step and time behind it
 };
 
-/// A run was asked to stop and has stopped after a whole step; what was computed is good (exit 2: it is not
-/// done).
+/// A run was asked to stop and has stopped after a whole step; its results are valid (exit 2: it is not
+/// finished).
 struct StoppedError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -16,9 +16,9 @@
 
 namespace esfem {
 
-/// The widest vectors of the machine that the library was configured for: GCC takes wider ones apart in
-/// memory, which is ten times slower. It is no matter of the flags of who includes this, because the library
-/// has to agree.
+/// The widest vectors of the machine that the library was configured for: GCC splits wider ones in memory,
+/// which is ten times slower. It does not depend on the flags of the including program, because it must agree
+/// with the library.
 constexpr int pack_size = ESFEM_PACK_SIZE;
 static_assert(
     EIGEN_MAX_ALIGN_BYTES == pack_size * sizeof(double),
@@ -29,8 +29,8 @@ static_assert(
 /// arithmetic on the elements of a batch at once, one instruction each. Scalars mix freely (2 * p, p + 1.0).
 ///
 /// Compiled without the library's -m flags it is several instructions, and a function returns it in memory
-/// instead of in a register. So no call from one object file to another passes a Pack by value: between them
-/// go references, structs of several Packs, and functions that are always inlined.
+/// instead of in a register. So no call from one object file to another passes a Pack by value; allowed are
+/// references, structs of several Packs, and functions that are always inlined.
 using Pack = double __attribute__((vector_size(pack_size * sizeof(double))));
 
 /// Truth values of comparisons of Packs, -1 or 0.

@@ -17,8 +17,8 @@ using Series = std::map<std::string, std::vector<double>>;
 /// "worst_radius_ratio" (of the triangles between the corners).
 void record_geometry(const SurfaceSpace& space, double t, const Field& x, Series& series);
 
-/// Appends what the mean curvature H_h (N x 1) says: "willmore_energy" 1/2 int H_h² over Gamma_h[x] (8 pi on
-/// spheres) and "max_H" (of |H_h| in the nodes).
+/// Appends quantities of the mean curvature H_h (N x 1): "willmore_energy" 1/2 int H_h² over Gamma_h[x] (8 pi
+/// on spheres) and "max_H" (of |H_h| in the nodes).
 void record_curvature(const SurfaceSpace& space, const Field& x, const Field& H, Series& series);
 
 /// Appends the lengths of a flow's own normal nu_h (N x 3) in the nodes: "min_nu" and "max_nu".
@@ -40,20 +40,19 @@ struct TorusRadii {
 };
 TorusRadii fitted_torus_radii(const Field& x);
 
-/// The time at which a surface that shrinks has shrunk to a point or a line: where its area, extrapolated
-/// linearly from the last two steps, is zero; the area of a sphere under mean curvature flow is linear in
-/// time. Nothing as long as more than `steps` steps of the last one's size lead there, unless the area has
-/// come below 1e-6 of its first value.
+/// The time at which a shrinking surface has become a point or a line: when its area, extrapolated linearly
+/// from the last two steps, is zero; the area of a sphere under mean curvature flow is linear in time. No
+/// value as long as this is more than `steps` steps of the last size away, unless the area is below 1e-6 of
+/// its first value.
 std::optional<double> extinction_time(const Series& series, int steps = 1);
 
-/// The time at which mean curvature flow of the surfaces of a series has come to its end at the latest: int
-/// H² is at least 16 pi for every closed surface (Willmore), so that an area A lives no longer than A/(16
-/// pi).
+/// The latest time at which mean curvature flow of the surfaces of a series can end: int H² is at least 16 pi
+/// for every closed surface (Willmore), so that a surface of area A exists for A/(16 pi) at most.
 double latest_end_of_mean_curvature_flow(const Series& series);
 
 /// The time at which the neck pinches: neck_radius² extrapolated to zero from the last three steps at which
 /// the neck still has a fifth of its first radius, by a parabola, or by a line through the last two where the
-/// parabola bends upwards. Nothing when the neck has not come below half of its first radius, or does not
+/// parabola bends upwards. No value when the neck has not shrunk below half of its first radius, or does not
 /// shrink in these steps.
 std::optional<double> pinch_time(const Series& series);
 

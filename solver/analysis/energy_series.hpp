@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The energy of a Cahn-Hilliard run over time, and how well it repeats itself.
+// The energy of a Cahn-Hilliard run over time, and its periodicity.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace esfem {
 /// nodal values).
 void record_energy(const SurfaceSpace& space, const CahnHilliardState& state, double epsilon, Series& series);
 
-/// A run that goes on from the checkpoint goes on with its series, too. They must outlive the run.
+/// A run that resumes from the checkpoint continues its series, too. They must outlive the run.
 void attach(Checkpoint& checkpoint, Series& series);
 
 /// Every k-th entry of each series, and the last one, with the smallest k that leaves at most `most` + 1 of

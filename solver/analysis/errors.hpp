@@ -30,7 +30,7 @@ SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const
                            double t, const Field& w);
 
 /// Raises the maxima of nodal_L2, nodal_H1 and nodal_H1_semi (kind "nodal"; or "lifted") of each quantity to
-/// these norms, and tells each(quantity, norm, value).
+/// these norms, and calls each(quantity, norm, value).
 void raise_maxima(const Quantities& quantities, const std::string& kind, const SquaredNorms& norms,
                   Errors& maxima,
                   const std::function<void(const std::string&, const std::string&, double)>& each = {});

@@ -18,12 +18,12 @@ struct SnapshotPlan {
   std::string pvd;  ///< the collection, "run.pvd"; empty: no snapshots are wanted
   std::vector<double> times;
   int every = 0;
-  RunLabel run = {};           ///< what each snapshot says of the run
+  RunLabel run = {};           ///< description of the run in each snapshot
   Vec3 origin = Vec3::Zero();  ///< is added to the positions of snapshots
 };
 
-/// Keeps what is seen of a run on one mesh: a time series, snapshots, and the newest surface. A step that
-/// cannot be recorded leaves no trace in them.
+/// Records a run on one mesh: a time series, snapshots, and the newest surface. A step that cannot be
+/// recorded changes none of them.
 class RunRecorder {
  public:
   /// The newest surface with its nodal fields.
@@ -52,7 +52,7 @@ class RunRecorder {
     record(n, state.t, state.x, nodal_fields(state));
   }
 
-  /// What a flow's own nu and H say of the newest surface, and what the surface says of itself.
+  /// Quantities of the newest surface from the flow's own nu and H, and from the surface itself.
   struct CurvatureComparison {
     double deviation;             ///< DiscreteCurvature::deviation
     double energy, kappa_energy;  ///< 1/2 int H², 1/2 int |kappa|²
@@ -79,9 +79,9 @@ class RunRecorder {
 
   /// All that has been recorded, for CBOR.
   nlohmann::json progress() const;
-  /// Goes on from there, whatever has been recorded until now. With another plan: its times and `every` hold
-  /// from there on, and a new collection begins with the surface from which the run goes on, while the old
-  /// one stays as it is. Throws InputError, and changes nothing, when a snapshot's file is missing.
+  /// Resumes from there, whatever has been recorded until now. With another plan, its times and `every` apply
+  /// from there on, and a new collection begins with the surface from which the run resumes, while the old
+  /// one is left unchanged. Throws InputError, and changes nothing, when a snapshot's file is missing.
   void resume(const nlohmann::json& progress);
 
  private:
@@ -101,7 +101,7 @@ class RunRecorder {
   std::vector<Snapshot> snapshots_;
 };
 
-/// A run that goes on from the checkpoint goes on with its records, too. The recorder must outlive the run.
+/// A run that resumes from the checkpoint continues its records, too. The recorder must outlive the run.
 void attach(Checkpoint& checkpoint, RunRecorder& recorder);
 
 }  // namespace esfem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the numbers of a time series say.
+// Quantities of a time series.
 #pragma once
 
 #include <cstddef>

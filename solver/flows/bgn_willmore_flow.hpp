@@ -37,7 +37,7 @@ class WeakWeingarten {
 /// H^{n-1} and the WeakWeingarten that belongs to it.
 ///
 /// Q is explicit: it is (kappa_1 - kappa_2)²/2 H, and its implicit version with (|A|² - H²/2) H^n, the factor
-/// before H never negative, would only take from the definiteness of the matrix. On the Clifford torus the
+/// before H never negative, would only reduce the definiteness of the matrix. On the Clifford torus the
 /// scheme is stable for tau <= 0.01, with the implicit Q it oscillates there.
 ///
 /// For the lumped scheme of the paper (P1) give the space the rule of the vertices, vertex_quadrature().

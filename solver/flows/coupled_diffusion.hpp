@@ -11,7 +11,7 @@
 
 namespace esfem {
 
-/// How a surface that is moved by what diffuses on it is discretised (see CoupledDiffusion).
+/// How surface evolution coupled to diffusion is discretised (see CoupledDiffusion).
 struct CoupledDiffusionVariant {
   enum Mass {
     extrapolated,  ///< (2.19): M(x̃^{n-j}) u^{n-j}, kept from the steps before
@@ -83,7 +83,7 @@ class CoupledDiffusionScheme {
   Field x_tilde_, u_tilde_, x_sum_, A_x_sum_, Mu_sum_, Mv_sum_;
 };
 
-/// A surface that is moved by what diffuses on it (nick18 (2.7)-(2.9), here for species u_1..u_m):
+/// Surface evolution coupled to diffusion on the surface (nick18 (2.7)-(2.9), here for species u_1..u_m):
 ///   d•u_l + u_l div v - D_l Lap u_l = f_l(u, grad u),   l = 1..m,
 /// and one of two velocity laws,
 ///   regularised (2.8):              v - alpha Lap v + beta H nu = g(u, grad u) nu,

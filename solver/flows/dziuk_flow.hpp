@@ -14,14 +14,14 @@ namespace esfem {
 /// Mean curvature flow by Dziuk's scheme (Numer. Math. 58, 1990; kll19 (3.6)), linearly implicit BDF:
 ///   M(x~) 1/tau sum_{j>=0} delta_j x^{n-j} + A(x~) x^n = 0.
 ///
-/// Tangential motion of the nodes: A(x) x is normal to the surface, so a tangential displacement d changes it
-/// by nothing to first order, and of A(x~) x^n there remains A (d^n - d~^n), d~ extrapolated. For a mode with
-/// A d = lambda M d this is
+/// Tangential motion of the nodes: A(x) x is normal to the surface, so a tangential displacement d does not
+/// change it to first order, and its contribution to A(x~) x^n is A (d^n - d~^n), d~ extrapolated. For a mode
+/// with A d = lambda M d this is
 ///   delta(zeta) + tau lambda (1 - zeta)^q = 0,
 /// which has its roots outside the unit disk for q <= 3, but not for q = 4 beyond tau lambda = 2.5 and q = 5
-/// beyond 0.64: these are unstable (a run with them is allowed: it shows it). With q = 2 the tangential
-/// velocity is damped by (tau lambda + 1/2)/(tau lambda + 3/2) per step alone, next to nothing for rough
-/// modes: their drift goes on until the mesh degenerates. With q = 1 it stops at once.
+/// beyond 0.64: these are unstable (runs with them are allowed, to show this). With q = 2 the tangential
+/// velocity is damped only by (tau lambda + 1/2)/(tau lambda + 3/2) per step, hardly at all for rough modes:
+/// their drift continues until the mesh degenerates. With q = 1 it stops immediately.
 ///
 /// Unknown nodal vector: positions x. The velocity v = 1/tau sum_{j>=0} delta_j x^{n-j} is kept beside it.
 class DziukFlow {
@@ -48,7 +48,7 @@ class DziukFlow {
   Field x_tilde_, sum_;
 };
 
-/// What to tell who runs the scheme with BDF of order q: that 4 and 5 are unstable; "" for the others.
+/// The warning for BDF of order q: orders 4 and 5 are unstable; "" for the others.
 std::string dziuk_warning(int q);
 
 /// The state on nodes x at time 0, with v = -M(x)^-1 A(x) x.

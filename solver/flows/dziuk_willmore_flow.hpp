@@ -22,9 +22,9 @@ namespace esfem {
 /// The step has the matrix M/tau + B M^-1 A, and M^-1 B M^-1 A has eigenvalues down to -mu, mu about c/h²:
 /// beyond tau = 1/mu the matrix can be singular. Seen with P2 on the unit sphere: tau = h²/1000 runs, h²/500
 /// ends with a destroyed mesh; on an ellipsoid (1, 1, 0.6) h²/2600 runs, h²/800 does not. The cause is that
-/// A(x^{n-1}) x^n takes a tangential displacement for curvature; B(x^{n-1}) does not, and M/tau + B M^-1 B is
-/// positive definite for all tau. With it steps 10 to 50 times as large run; the explicit |w^{n-1}|² is what
-/// limits them then.
+/// A(x^{n-1}) x^n treats a tangential displacement as curvature; B(x^{n-1}) does not, and M/tau + B M^-1 B is
+/// positive definite for all tau. It allows steps 10 to 50 times as large, which are then limited by the
+/// explicit |w^{n-1}|².
 class DziukWillmoreFlow {
  public:
   /// The equation of w^n, M w^n = -A x^n on the old surface (dziuk), or with the derivative of A(x) x by the

@@ -38,8 +38,8 @@ class LinearisedCahnHilliardScheme {
 /// Cahn-Hilliard equation on a surface that moves with a given velocity, without sources, for steps of any
 /// size:
 ///   d•u + u div v - Lap w = 0,   w + epsilon Lap u = g(u)/epsilon.
-/// CahnHilliard evaluates g(u~), and that bounds its steps. Around a constant state backward Euler multiplies
-/// a mode with -Lap phi = lambda phi by
+/// CahnHilliard evaluates g(u~), which limits its step size. Around a constant state backward Euler
+/// multiplies a mode with -Lap phi = lambda phi by
 ///   (1 - tau lambda g'/epsilon) / (1 + tau epsilon lambda²),
 /// which for g' > 0 is below -1 for some lambda when tau > 8 epsilon³/g'²; BDF2, whose u~ triples the
 /// numerator at the root -1, bounds it by 16/9 epsilon³/g'². Here g is linearised around u~,

@@ -7,12 +7,12 @@
 
 namespace esfem {
 
-/// Separation of a mixture on a surface at rest: the fully implicit Cahn-Hilliard scheme with the double-well
-/// potential, for steps of any size. The equation is a gradient flow of the Ginzburg-Landau energy, but a
-/// step with tau > 4 epsilon³ or so has several solutions, among them such as have a higher energy (the
-/// uniform state, for one). So a step in which the energy rises, or in which Newton's method does not
-/// converge, is replaced by steps of backward Euler, as long as they may be: their size is halved until the
-/// energy falls, and doubled after each.
+/// Phase separation of a mixture on a stationary surface: the fully implicit Cahn-Hilliard scheme with the
+/// double-well potential, for steps of any size. The equation is a gradient flow of the Ginzburg-Landau
+/// energy, but a step with tau > 4 epsilon³ or so has several solutions, some of them with a higher energy
+/// (for example the uniform state). So a step in which the energy rises, or in which Newton's method does not
+/// converge, is replaced by backward Euler steps, as large as possible: their size is halved until the energy
+/// decreases, and doubled after each step.
 class PhaseSeparation {
  public:
   using State = CahnHilliardState;
@@ -23,7 +23,7 @@ class PhaseSeparation {
   PhaseSeparation& operator=(const PhaseSeparation&) = delete;
 
   /// One step with BDF of order q, or its replacement: fills all fields of next, whose energy is at most that
-  /// of the newest state. Throws NumericsError when the energy rises in the smallest step, too.
+  /// of the newest state. Throws NumericsError when the energy rises even in the smallest step.
   void step(const BdfStep<State>& step, State& next);
 
   /// The number of steps that have been replaced.

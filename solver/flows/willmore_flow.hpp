@@ -31,9 +31,8 @@ class WillmoreFlow {
         true;  ///< after each step nu_h to unit length and z_h to the plane normal to it, in the nodes (§7.1)
     /// lambda >= 0: adds lambda int (n - nu_h) . phi to the equation of nu, n the normal of Gamma_h, and
     /// lambda int (div nu_h - H_h) phi + nu_h . grad phi to that of H. Not in the paper; zero for the exact
-    /// solution. It keeps nu_h and H_h from drifting away from the surface that they belong to. 1/time. Taken
-    /// explicitly: lambda tau <= 0.5 is stable on surfaces that tend to a sphere of radius one, 0.2 on tori
-    /// of that size.
+    /// solution. It prevents nu_h and H_h from drifting away from the surface. Unit 1/time. Explicit: lambda
+    /// tau <= 0.5 is stable on surfaces that tend to a sphere of radius one, 0.2 on tori of that size.
     double relaxation = 0;
     /// Tolerance of nu and H, see Reinitialisation; 0: they are never taken from the surface.
     double reinitialise = 0;
@@ -68,8 +67,8 @@ class WillmoreFlow {
   /// one serves several of them (LaggedBlockSolver).
   int factorisations() const { return lagged_.factorisations(); }
 
-  /// What the flow keeps from step to step, for checkpoints: resume(progress()) makes another flow go on with
-  /// the same bits.
+  /// What the flow keeps from step to step, for checkpoints: resume(progress()) makes another flow continue
+  /// with the same bits.
   nlohmann::json progress() const { return lagged_.progress(); }
   void resume(const nlohmann::json& saved) { lagged_.resume(saved); }
 

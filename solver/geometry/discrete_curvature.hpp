@@ -6,8 +6,8 @@
 
 namespace esfem {
 
-/// Normal and mean curvature of a discrete surface of which only the nodes are known: what flows without
-/// these unknowns (Dziuk's, BGN's) are judged by. On P_k surfaces nu converges with order k in L2, kappa and
+/// Normal and mean curvature of a discrete surface of which only the nodes are known. Flows without these
+/// unknowns (Dziuk's, BGN's) are assessed by them. On P_k surfaces nu converges with order k in L2, kappa and
 /// H with order k - 1: not at all for P1.
 class DiscreteCurvature {
  public:

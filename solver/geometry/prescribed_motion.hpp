@@ -25,8 +25,8 @@ class MovingNodes {
   /// Throws InputError unless tau is positive.
   MovingNodes(Velocity velocity, Field x0, double tau, int kept = newest_few);
 
-  /// The positions at a time, which must be a multiple of tau (InputError). Those that are not kept are
-  /// computed anew from the start.
+  /// The positions at a time, which must be a multiple of tau (InputError). Positions that are not kept are
+  /// recomputed from the start.
   const Field& at(double t);
 
  private:

@@ -9,8 +9,8 @@
 
 namespace esfem {
 
-/// Takes nu and H of a flow that evolves them anew from the surface, from which they part where the mesh does
-/// not resolve its curvature (creases, noise).
+/// Recomputes nu and H from the surface for a flow that evolves them: they deviate from the surface where the
+/// mesh does not resolve its curvature (creases, noise).
 ///
 /// A step of BDF q sees u = (nu, H) of q states. If only the newest were replaced, by a jump d, the
 /// derivative of u in the next step would be wrong by d/tau, whatever tau is. So the states of the history
@@ -29,7 +29,7 @@ class Reinitialisation {
     if (tolerance > 0) curvature_ = std::make_unique<DiscreteCurvature>(space);
   }
 
-  /// Replaces nu and H of a state where they have parted from the surface.
+  /// Replaces nu and H of a state when they deviate from the surface.
   void apply(State& state) {
     if (curvature_ && has_parted(state)) replace(state);
   }

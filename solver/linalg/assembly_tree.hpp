@@ -39,7 +39,7 @@ struct AssemblyTree {
 
 /// Orders by METIS, finds the supernodes and merges small ones with their parents.
 AssemblyTree assembly_tree(const SparsityPattern& pattern);
-/// The same in a given order, of which the tree keeps what fronts allow: it is postordered.
+/// The same in a given order, up to the postordering of the tree.
 AssemblyTree assembly_tree(const SparsityPattern& pattern, const std::vector<int>& ordering);
 
 }  // namespace esfem

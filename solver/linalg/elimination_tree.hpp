@@ -7,7 +7,8 @@
 
 namespace esfem {
 
-/// What elimination in a given order does to a symmetric pattern. Columns go by their place in the order.
+/// The elimination tree of a symmetric pattern in a given order. Columns are numbered by their place in the
+/// order.
 struct EliminationTree {
   std::vector<int> parent;  ///< first row below the diagonal of L in each column; -1 for roots
   std::vector<int> below;   ///< number of rows below the diagonal of L in each column

@@ -90,7 +90,7 @@ inline std::complex<double> lane_sum(const ComplexPack& p) {
   return {lane_sum(p.re), lane_sum(p.im)};
 }
 
-/// A dense matrix whose columns are read and written in Packs; it refers to memory of somebody else. Rows are
+/// A dense matrix whose columns are read and written in Packs; it does not own its memory. Rows are
 /// numbered from `first_row`, a multiple of pack_size; `stride`, also one, is the number of rows that a
 /// column has room for. Complex columns are all real parts, then all imaginary parts.
 template <class T>

@@ -7,7 +7,8 @@
 
 namespace esfem {
 
-/// Fronts that can be eliminated side by side: those of each part need nobody else's; `top` needs all parts.
+/// Fronts that can be eliminated in parallel: those of a part depend on no other part; `top` depends on all
+/// parts.
 struct SplitTree {
   std::vector<std::vector<int>> parts;  ///< in postorder; whole subtrees
   std::vector<int> top;                 ///< in postorder

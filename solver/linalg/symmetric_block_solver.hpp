@@ -14,7 +14,7 @@ namespace esfem {
 /// Q of A the complex form of BlockSolver takes half as long.
 ///
 /// L D L^T without pivoting meets small pivots in such systems. They are replaced, and iterative refinement,
-/// or GMRES where that is slow, makes up for this and for the growth of round-off.
+/// or GMRES where that is slow, compensates for this and for the growth of round-off.
 class SymmetricBlockSolver {
  public:
   explicit SymmetricBlockSolver(std::shared_ptr<const SparsityPattern> pattern);

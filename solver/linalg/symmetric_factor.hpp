@@ -18,9 +18,9 @@
 
 namespace esfem {
 
-/// What becomes of a pivot that is small beside the matrix. Replaced by a larger one (Li and Demmel, ACM
-/// Trans. Math. Softw. 29, 2003), the factors are those of a matrix nearby, with which systems can be solved
-/// iteratively.
+/// Treatment of a pivot that is small relative to the matrix. If it is replaced by a larger one (Li and
+/// Demmel, ACM Trans. Math. Softw. 29, 2003), the factors are those of a nearby matrix, with which systems
+/// can be solved iteratively.
 enum class SmallPivots { are_errors, are_replaced };
 
 /// Direct solver of symmetric systems with b x b blocks of numbers T for the pairs of nodes on a pattern: L D
@@ -52,7 +52,7 @@ class SymmetricFactor {
 
   /// Factorises the matrix whose block for the k-th entry of the pattern, nodes i >= j, is entry(k), and its
   /// transpose for j, i. Throws NumericsError with the node when a pivot has the wrong sign, has lost all
-  /// digits of the diagonal, or is not finite; nothing is factorised then. Allocates nothing from the second
+  /// digits of the diagonal, or is not finite; then there are no factors. Allocates nothing from the second
   /// call on, nor does solve.
   template <class Entry>
   void factorise(const Entry& entry) {
@@ -62,7 +62,7 @@ class SymmetricFactor {
   }
 
   /// Solves for all columns in place. Throws InputError when the number of rows is wrong, NumericsError when
-  /// nothing is factorised.
+  /// there are no factors.
   void solve(Right& right) {
     require_factor(right.rows());
     solve(

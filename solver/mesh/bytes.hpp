@@ -40,7 +40,7 @@ class Bytes {
     return value;
   }
 
-  /// Goes on by that many bytes, which must be there; `what` they are, for errors.
+  /// Skips that many bytes, which must exist; `what` they are, for errors.
   void skip(std::size_t bytes, const char* what) {
     if (left() < bytes) fail(std::string("the file ends in ") + what);
     position_ += bytes;

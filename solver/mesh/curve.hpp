@@ -13,17 +13,18 @@ namespace esfem {
 ///
 /// The interpolant of a surface by P_k elements has errors O(h^(k+1)) in position, O(h^k) in normals, and
 /// O(h^(k-1)) in H, which is a derivative of the normal. Nodes that are off by d add d/h to the normals and
-/// d/h² to H. So with straight edges, d = O(h²), H does not converge, and d = O(h^(k+1)) would do. The fits
-/// have d = O(h^(k+3)), all that two rings of corners can give for k = 2, so that errors are soon those of
-/// the interpolant.
+/// d/h² to H. So with straight edges, d = O(h²), H does not converge, and d = O(h^(k+1)) would suffice. The
+/// fits have d = O(h^(k+3)), the best that two rings of corners allow for k = 2, so that the errors are soon
+/// those of the interpolant.
 class SmoothSurface {
  public:
   /// For elements of degree k = 2, 3, 4. `flat` is of degree 1 and must outlive the object. Throws InputError
   /// unless it is closed, and for another k or angle.
   SmoothSurface(const Mesh& flat, int degree, double feature_angle);
 
-  /// The point over a point of a flat element with barycentric coordinates `weights`. Where the fits are wild
-  /// (further away than a quarter of the longest edge), it is the flat point itself, and is_wild is set.
+  /// The point over a point of a flat element with barycentric coordinates `weights`. Where the fits
+  /// oscillate (further away than a quarter of the longest edge), it is the flat point itself, and is_wild is
+  /// set.
   Vec3 point(int element, const Vec3& weights, bool& is_wild) const;
   Vec3 point(int element, const Vec3& weights) const;
 
@@ -69,7 +70,7 @@ struct CurvedMesh {
 /// triangulation. The Jacobian of every element is positive. Errors as of SmoothSurface.
 CurvedMesh curved_mesh(const Mesh& flat, int degree, double feature_angle = default_feature_angle);
 
-/// Whether every node of a mesh lies where straight edges and flat triangles have it.
+/// Whether every node of a mesh lies on straight edges and flat triangles.
 bool is_flat(const Mesh& mesh);
 
 }  // namespace esfem

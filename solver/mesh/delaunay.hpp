@@ -14,8 +14,7 @@ using SizeFunction = std::function<double(const Vec3&)>;
 /// Restricted Delaunay triangulation of the surface by CGAL's Delaunay refinement (Boissonnat & Oudot,
 /// Graphical Models 67, 2005), so dense that after a relaxation the largest edges have the length `size`.
 /// Nodes lie on the surface, triangles are oriented outward; whether it is closed and has the right topology
-/// is left to the caller. The same arguments give the same bits, in whatever process and after whatever
-/// calls.
+/// is left to the caller. The same arguments give the same bits, in every process and after any calls.
 Mesh delaunay_surface_mesh(const Surface& surface, const SizeFunction& size);
 
 /// The nodes' numbers in the order of a Hilbert curve: neighbours in space become neighbours in memory.

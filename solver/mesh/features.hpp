@@ -20,15 +20,15 @@ struct Features {
   int sectors = 0;  ///< how many there are, at least one a corner
   int sharp_edges = 0;
 
-  /// The sharp side that goes on from the end of a sharp one: where exactly two sharp edges meet, and
-  /// turn by no more than the angle. -1: none, the feature ends or has a corner there.
+  /// The sharp side that continues a sharp one at its end, if exactly two sharp edges meet there and turn by
+  /// no more than the angle. -1: none, the feature ends or has a corner there.
   std::vector<int> next_sharp;
 };
 
 /// Of a closed mesh of degree 1. Throws InputError unless 0 < angle <= 180.
 Features find_features(const Mesh& mesh, double angle);
 
-/// The same surface with other sharp edges, which turn by no more than `angle` where they go on.
+/// The same surface with other sharp edges, which turn by no more than `angle` where they continue.
 Features features_along(const Mesh& mesh, const std::vector<int>& twin, const std::vector<bool>& sharp,
                         double angle);
 

@@ -59,7 +59,7 @@ class Lines {
 
   /// What comes after the current line: a binary part starts there.
   std::string_view rest() const { return rest_; }
-  /// Goes on behind that many bytes of it; lines in them are counted.
+  /// Continues after that many bytes of it; lines in them are counted.
   void skip(std::size_t bytes);
 
  private:

@@ -32,7 +32,7 @@ class MshRecords {
     if (binary_) bytes_.emplace(file_, content_, content_.size() - lines.rest().size(), swapped_);
   }
 
-  /// The lines go on behind the last record.
+  /// The lines continue after the last record.
   void close() {
     if (bytes_) lines.skip(bytes_->position() - (content_.size() - lines.rest().size()));
     bytes_.reset();

@@ -20,8 +20,8 @@ struct ReadMesh {
 
 /// Reads a closed triangulated surface of one or several components: Gmsh MSH 2.2 and 4.1, ASCII
 /// and binary (.msh; triangles of degree 1 to 4, curved nodes kept, 4-node quadrangles, or the boundary of
-/// volume elements), the snapshots of write_vtu (.vtu), OFF, OBJ, PLY, STL. What can be mended without a
-/// guess is mended, and the remark says so: polygons are cut into triangles, nodes in no triangle are
+/// volume elements), the snapshots of write_vtu (.vtu), OFF, OBJ, PLY, STL. Defects with an unambiguous
+/// repair are repaired, and the remark lists them: polygons are cut into triangles, nodes in no triangle are
 /// dropped, nodes in one place along open sides are joined, elements with two equal corners are dropped,
 /// those with corners on a line are flipped, nodes where the surface touches itself are doubled (`repair`),
 /// elements are oriented alike and outward (`orient`). Throws InputError, one line that names the file, the

@@ -10,7 +10,7 @@ namespace esfem {
 bool has_no_area(const Mesh& mesh, int element);
 
 /// Gives an element of degree 1 whose corners lie on a line its share of the neighbour along its longest
-/// edge: the two exchange their common edge for the other diagonal, which leaves the surface as it is. CAD
+/// edge: the two exchange their common edge for the other diagonal, which does not change the surface. CAD
 /// programs write such elements where a corner lies on an edge. Adds a remark when it did.
 void flip_flat_elements(MeshFile& file);
 

@@ -18,13 +18,13 @@ struct RemeshedSurface {
   double relative_volume_change;
 };
 
-/// A closed mesh of degree 1 remade with edges of about `edge_length` and triangles close to equilateral, by
-/// CGAL's isotropic remeshing (Botsch & Kobbelt, SGP 2004). Its nodes lie on the triangles of the given mesh,
-/// along its sharp edges on these, and corners of features stay. Where that makes triangles of a radius ratio
-/// below 0.05, since features are closer than the edge length, these are given up, unless that changes the
-/// volume by more than a hundredth. The same arguments give the same bits. Throws InputError unless
-/// edge_length is at most a quarter of the diagonal of the bounding box and makes no more than ten million
-/// triangles, and when the remeshing fails.
+/// A closed mesh of degree 1 remeshed with edges of about `edge_length` and triangles close to equilateral,
+/// by CGAL's isotropic remeshing (Botsch & Kobbelt, SGP 2004). Its nodes lie on the triangles of the given
+/// mesh, along its sharp edges on these, and corners of features stay. If this gives triangles of a radius
+/// ratio below 0.05, because features are closer than the edge length, these features are given up, unless
+/// that changes the volume by more than a hundredth. The same arguments give the same bits. Throws InputError
+/// unless edge_length is at most a quarter of the diagonal of the bounding box and makes no more than ten
+/// million triangles, and when the remeshing fails.
 RemeshedSurface remesh(const Mesh& mesh, double edge_length, double feature_angle = default_feature_angle);
 
 }  // namespace esfem

@@ -5,7 +5,7 @@
 
 namespace esfem {
 
-/// Mends what scans and CAD parts often have, and adds a remark for each thing that was done:
+/// Repairs common defects of scans and CAD parts, and adds a remark for each repair:
 /// - Nodes that no element uses are dropped.
 /// - Nodes on open sides (of one element only) are joined when they are equal; if sides are open after that,
 ///   when they are within 1e-6 of the diagonal of the bounding box, and within a quarter of the shortest edge
@@ -14,7 +14,7 @@ namespace esfem {
 /// - Elements with two equal corners are dropped.
 /// - Elements with three corners on a line are flipped with their neighbour (`flip_flat_elements`).
 /// - Nodes where the surface touches itself are doubled (`split_touching_nodes`).
-/// What the mesh is afterwards is judged by `check_closed_surface`.
+/// The result is checked by `check_closed_surface`.
 void repair(MeshFile& file);
 
 }  // namespace esfem

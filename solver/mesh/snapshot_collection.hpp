@@ -22,7 +22,7 @@ class SnapshotCollection {
   /// write_vtu.
   std::string add(int n, double t, const Field& x, const NodalFields& fields);
 
-  /// Goes on after these snapshots (times and names as `add` gave them), whatever is listed now. Throws
+  /// Continues after these snapshots (times and names as `add` gave them), whatever is listed now. Throws
   /// InputError when the file of one is missing.
   void resume(std::vector<std::pair<double, std::string>> snapshots);
 

@@ -9,13 +9,13 @@
 
 namespace esfem {
 
-/// What the snapshots of a run say of it, in UTF-8; empty: nothing.
+/// Description of a run in its snapshots, in UTF-8; empty: none.
 struct RunLabel {
   std::string flow;           ///< as `evolve` calls it
-  std::string configuration;  ///< JSON: what the run was asked to do
+  std::string configuration;  ///< JSON: the configuration of the run
 };
 
-/// What a snapshot says beside its surface.
+/// What a snapshot contains in addition to its surface.
 struct SnapshotLabel {
   int step = 0;
   double t = 0;

@@ -58,7 +58,7 @@ ExactEvolution shrinking_sphere(double initial_radius);
 /// initial positions of trajectories must lie on the torus.
 ExactEvolution shrinking_angenent_torus(double initial_scale = 1);
 
-/// A sphere at rest, as Willmore flow and surface diffusion leave it (kll21 §7.1). Quantities x, nu, H.
+/// A sphere at rest, stationary under Willmore flow and surface diffusion (kll21 §7.1). Quantities x, nu, H.
 ExactEvolution stationary_sphere(double radius);
 
 /// A torus at rest: the Clifford torus, major = sqrt(2) minor, under Willmore flow (kll21 §7.3). Quantities

@@ -33,7 +33,7 @@ class GrowingSphereProblem {
   enum Coupling {
     additive,  ///< g = G(t) + (u - a x1 x2 x3)
     /// g = u G(t)/(a x1 x2 x3), as §7.3 prints it: 0/0 on three planes. Errors of u are amplified where
-    /// quadrature points come near them; on coarse meshes the solution is lost.
+    /// quadrature points come near them; on coarse meshes the run becomes unstable.
     quotient,
     none  ///< g = G(t)
   };

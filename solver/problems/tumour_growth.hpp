@@ -5,7 +5,7 @@
 
 namespace esfem {
 
-/// Growth of a tumour, as the field's literature has it (Barreira, Elliott, Madzvamuse, J. Math. Biol. 63,
+/// The tumour growth model of the literature (Barreira, Elliott, Madzvamuse, J. Math. Biol. 63,
 /// 2011): an activator u_1 and a substrate u_2 with Schnakenberg's kinetics on a surface that grows where
 /// there is activator,
 ///   f_1 = gamma (a - u_1 + u_1² u_2),  f_2 = gamma (b - u_1² u_2),  g = delta u_1,
@@ -30,7 +30,8 @@ class TumourGrowth {
 
   Pack g(double, const PointData<2>& p) const { return kinetics_.delta * p.u[0]; }
 
-  /// The state without space: u_1 = a + b, u_2 = b/(a + b)², where f_1 = f_2 = 0. It is unstable for D = 10.
+  /// The spatially homogeneous steady state: u_1 = a + b, u_2 = b/(a + b)², where f_1 = f_2 = 0. It is
+  /// unstable for D = 10.
   static Eigen::RowVector2d steady_state(const Kinetics& kinetics);
 
  private:

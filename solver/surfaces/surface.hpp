@@ -151,8 +151,7 @@ T surface_laplacian(const LevelSet& d, const Function& f, const std::array<T, 3>
 }
 
 /// A surface from a functor with `template <class T> T operator()(const T& x1, const T& x2, const T& x3)
-/// const`: all derivatives come from Ceres Jets, so the formula of d (made of + - * / sqrt) is all that one
-/// writes.
+/// const`: all derivatives come from Ceres Jets, so only the formula of d (made of + - * / sqrt) is needed.
 template <class LevelSet>
 Surface make_surface(std::string name, LevelSet d, double bounding_radius, double smallest_curvature_radius,
                      int euler_characteristic, std::map<std::string, double> parameters = {}) {

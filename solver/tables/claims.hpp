@@ -21,7 +21,7 @@ namespace esfem {
 struct Claim {
   enum Kind { order, size, value } kind = order;
   std::string id, statement;
-  std::string family;        ///< the id of the family that it is a member of; "": it stands by itself
+  std::string family;        ///< the id of the family that it is a member of; "": none
   std::string paper, place;  ///< source, e.g. "kll19", "§13.1, Fig. 13.1"
   /// What it rests on: "statement" (a sentence or figure of the paper), "theory" (a theorem or an identity),
   /// "independent" (another implementation), "finding" (this project's own).
@@ -34,12 +34,12 @@ struct Claim {
   double at_most = std::numeric_limits<double>::infinity();
   RowRange rows;
   int from_step = 0;  ///< the maximum over time is over the steps n >= this
-  /// The rows that have these labels; fewer than the rows have, when those that are left are of one variant.
+  /// The rows that have these labels; some labels may be omitted if the selected rows are of one variant.
   nlohmann::json where = nlohmann::json::object();
   std::set<std::string> presets;  ///< where it is checked; empty: everywhere
   std::vector<std::string>
       figures;  ///< of the paper, as it numbers them: beside these the report has the claim
-  /// What became of the paper's statement, where the bounds are this project's finding: "reproduced",
+  /// The verdict on the paper's statement, if the bounds are this project's finding: "reproduced",
   /// "reproduced, but", "not reproduced" or "corrected", with the reason; empty: it holds as stated when the
   /// claim is met. A remark may stand alone.
   std::string finding, remark;
@@ -72,12 +72,12 @@ struct Verdict {
   int rows_used = 0;
 };
 
-/// A claim that nothing can be measured for (a label or value in "where" that no row has, no rows in range, a
-/// failed one or several variants among them, no such quantity, round-off, no order determined) is not met.
+/// A claim for which nothing can be measured (a label or value in "where" that no row has, no rows in range,
+/// a failed one or several variants among them, no such quantity, round-off, no order determined) is not met.
 Verdict check_claim(const Claim& claim, const Table& table);
 
-/// Whether the claim is checked at the table's preset, its parameters["preset"]; a table without one is held
-/// to all.
+/// Whether the claim is checked at the table's preset, its parameters["preset"]; for a table without one, all
+/// claims are checked.
 bool applies(const Claim& claim, const Table& table);
 
 }  // namespace esfem

@@ -30,8 +30,8 @@ struct OrderFit {
 /// (scaled by the residual variance, Student's t). When only one variable varies, the other term is a
 /// constant plateau.
 ///
-/// Of the full model and those with a single term the data choose (Bayesian information criterion), so that a
-/// term that shows nowhere is left out. An order counts as determined (has_h, has_tau) when its standard
+/// The full model or one with a single term is selected by the Bayesian information criterion, so that a term
+/// without effect on the data is omitted. An order counts as determined (has_h, has_tau) when its standard
 /// error is at most 1/2; a term that shows in a few rows only stays in the model without one.
 ///
 /// Throws InputError, which says how many rows there are and how many are needed, when there are too few

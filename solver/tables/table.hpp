@@ -29,16 +29,16 @@ struct Row {
   Errors errors;                         ///< maxima over time
   std::map<std::string, double> values;  ///< other numbers that claims are about (pinch_time, ..)
   std::map<std::string, std::vector<double>> series;  ///< "t" and what was recorded at these times
-  /// What tells the run apart from others beside mesh and step size, as strings and numbers: {"flow":
+  /// What distinguishes the run from others except mesh and step size, as strings and numbers: {"flow":
   /// "dziuk", "bdf": 4}.
   nlohmann::json labels = nlohmann::json::object();
   nlohmann::json more = nlohmann::json::object();  ///< further keys of the row (snapshots, ...)
 };
 
-/// Whether the run of this row failed: it may not have anything but its status.
+/// Whether the run of this row failed: then it may have nothing but its status.
 bool failed(const Row& row);
 
-/// Labels for people: "bdf=4, flow=dziuk"; "" without any.
+/// Labels as readable text: "bdf=4, flow=dziuk"; "" without any.
 std::string label_text(const nlohmann::json& labels);
 
 /// The variant that a row belongs to, the text of its labels.

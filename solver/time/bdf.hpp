@@ -35,8 +35,8 @@ BdfWeights bdf_weights(int q);
 /// less.
 BdfWeights bdf_weights(int q, const double* old, double t);
 
-/// What a step of BDF of order q from t - tau to t knows: the weights, and the q newest states. Flows take
-/// it. It refers to the states of a History, and holds until that changes.
+/// What a step of BDF of order q from t - tau to t needs: the weights, and the q newest states. It is the
+/// argument of a flow's step. It refers to the states of a History, and holds until that changes.
 template <class State>
 class BdfStep {
  public:

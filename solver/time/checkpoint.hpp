@@ -60,28 +60,28 @@ std::string seal(const nlohmann::json& json);
 /// Its inverse; a discarded JSON value when the bytes are not what `seal` has made.
 nlohmann::json unseal(const std::string& bytes);
 
-/// A file from which a run goes on bit for bit: the states of its History and whatever else is attached. It
-/// stays when the run has ended, so that one with a later end goes on from it. It belongs to one run; a file
-/// of another run is never taken for it, and never replaced. What a run has gone on from is kept beside it,
-/// as FILE.previous, when the file is first replaced.
+/// A file from which a run resumes bit for bit: the states of its History and whatever else is attached. It
+/// is kept when the run has ended, so that a run with a later end can resume from it. It belongs to one run;
+/// a file of another run is neither used nor replaced. The file from which a run has resumed is kept as
+/// FILE.previous when it is first replaced.
 class Checkpoint {
  public:
   using Say = std::function<void(const std::string& message)>;
 
   /// The file is replaced (as a whole) every `seconds` seconds of wall-clock time at most; 0: at every step.
-  /// `description` says which run this is; what it must contain is all that its numbers depend on: the
-  /// version of the program, mesh, variant, parameters. Time grid and initial values are compared beside it.
-  /// What is in an array is compared, and not shown where a message says what differs. `say` is told that
-  /// the run goes on, and where. Folders that are missing are made. Throws InputError when the file cannot be
-  /// written, or when `seconds` is negative.
+  /// `description` identifies the run; it must contain everything that its numbers depend on: the version of
+  /// the program, mesh, variant, parameters. Time grid and initial values are compared in addition. Contents
+  /// of arrays are compared, but not shown in messages about differences. `say` receives the message that the
+  /// run resumes, and where. Missing folders are created. Throws InputError when the file cannot be written,
+  /// or when `seconds` is negative.
   Checkpoint(std::string file, nlohmann::json description, double seconds = 30, Say say = {});
 
-  /// Instead of an InputError: that a file cannot be used is said, and the run starts at t = 0 and replaces
-  /// it. For files that nobody has named; what the run has gone on from is not kept.
+  /// Instead of an InputError: a file that cannot be used is reported, and the run starts at t = 0 and
+  /// replaces it. For files that no user has named; the file from which the run has resumed is not kept.
   void start_afresh_when_unusable() { starts_afresh_ = true; }
 
-  /// Adds what belongs to the run beside the flow. What save() returns goes into the file; load(that) is
-  /// called when the run goes on from there, and must restore it exactly, or throw.
+  /// Adds other parts of the run than the flow. The value of save() is stored in the file; load(value) is
+  /// called when the run resumes, and must restore it exactly, or throw.
   void attach(std::function<nlohmann::json()> save, std::function<void(const nlohmann::json&)> load);
 
   /// Fills the empty `past`, `progress` and what is attached from the file and returns true; false when there
@@ -125,8 +125,8 @@ class Checkpoint {
            {"states", std::move(states)}});
   }
 
-  /// Wall-clock seconds that the run had taken when the file from which it goes on was written; 0 when it has
-  /// started at t = 0.
+  /// Wall-clock seconds that the run had taken when the file from which it has resumed was written; 0 when it
+  /// has started at t = 0.
   double seconds_before() const { return seconds_before_; }
 
  private:
@@ -148,7 +148,7 @@ class Checkpoint {
   bool starts_afresh_ = false;
   std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now(), saved_ = started_;
   double seconds_before_ = 0;
-  bool keeps_previous_ = false;  ///< the file is that from which the run has gone on
+  bool keeps_previous_ = false;  ///< the file is that from which the run has resumed
   std::vector<Companion> companions_;
 };
 

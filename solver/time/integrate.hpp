@@ -124,7 +124,7 @@ void find_starting_value(Flow& flow, const UniformSteps& steps,
 }
 
 /// Finds the states 0..q-1 (fewer when the run is shorter) and pushes them to `past`. Returns false when
-/// observe(n, state) does not let the run go on.
+/// observe(n, state) ends the run.
 template <class Flow, class Observe>
 bool take_starting_steps(Flow& flow, const UniformSteps& steps,
                          const StartingValues<typename Flow::State>& start, const Observe& observe,
@@ -161,7 +161,7 @@ void take_next_step(Flow& flow, const UniformSteps& steps, const History<typenam
   take_step(flow, past.equal_step(steps.order, steps.tau, next.t), next);
 }
 
-/// Whether a run goes on from what is there: not from some of the starting values.
+/// Whether a run can resume from these states: not from an incomplete set of starting values.
 template <class State>
 bool can_be_resumed(const UniformSteps&, const RunPosition&, const History<State>& past) {
   return past.size() == past.capacity();
@@ -238,8 +238,8 @@ bool is_at_end(const AdaptiveSteps& steps, const RunPosition&, const History<Sta
 }
 
 /// Computes `next` by a step whose size is halved until it succeeds; done.tau is the size to begin with, and
-/// becomes that for the following step. When the size has come down to first_step / 100 the error is let
-/// through.
+/// becomes that for the following step. When the size has been reduced to first_step / 100, the error is
+/// rethrown.
 template <class Flow>
 void take_next_step(Flow& flow, const AdaptiveSteps& steps, const History<typename Flow::State>& past,
                     RunPosition& done, typename Flow::State& next) {
@@ -259,7 +259,7 @@ void take_next_step(Flow& flow, const AdaptiveSteps& steps, const History<typena
   }
 }
 
-/// A run with a later end goes on from states whose steps do not depend on this end.
+/// A run with a later end resumes from states whose steps do not depend on this end.
 template <class State>
 bool can_be_resumed(const AdaptiveSteps& steps, const RunPosition& done, const History<State>&) {
   return done.least_end <= steps.end_time;
@@ -270,7 +270,7 @@ inline bool is_last_to_resume(const AdaptiveSteps& steps, const RunPosition& don
 
 // The loop.
 
-/// Whether an observer lets the run go on after this step: one that returns nothing always does.
+/// Whether the run continues after this step: it always does if the observer returns nothing.
 template <class Observer, class State>
 bool goes_on_after(Observer& observe, int n, const State& state) {
   if constexpr (std::is_same_v<decltype(observe(n, state)), bool>) {
@@ -288,7 +288,7 @@ struct KeepsProgress<
     Keeper, std::void_t<decltype(std::declval<Keeper&>().resume(std::declval<Keeper&>().progress()))>>
     : std::true_type {};
 
-/// A flow or an observer that has progress() and resume(json) goes on with the run.
+/// A flow or an observer that has progress() and resume(json) is saved and resumed with the run.
 template <class Keeper>
 void attach_progress(Checkpoint& checkpoint, Keeper& keeper) {
   if constexpr (KeepsProgress<Keeper>::value)
@@ -308,13 +308,12 @@ struct StepCount {
 /// The exact solution is needed for Start::exact with q > 1; without it that start is an InputError.
 /// NumericsErrors (of observers too) are rethrown with step and time; a non-finite value in a new state is
 /// one too. A flow that has settle(past, next) may change both after each step. An observer that returns
-/// false ends the run after this step with a StoppedError. With a checkpoint (none: nullptr) the run goes on
-/// where an earlier one had saved its states (after the starting steps, that is), with the same or a later
-/// end, and observes the steps from there on: with the same numbers, as long as `step` depends on its
-/// arguments alone, or what an earlier step has left in the flow is restored by its resume(progress()). What
-/// observers keep is saved in the same way. It is saved now and then, when the run is stopped, and at its
-/// end; with adaptive steps at the last state whose steps do not depend on the end time. A checkpoint serves
-/// one run.
+/// false ends the run after this step with a StoppedError. With a checkpoint (none: nullptr) the run resumes
+/// where an earlier one had saved its states (after the starting steps), with the same or a later end, and
+/// observes the steps from there on. The numbers are the same if `step` depends on its arguments alone, or if
+/// the flow's resume(progress()) restores what earlier steps have left in it. The data of observers are saved
+/// in the same way. The checkpoint is saved at intervals, when the run is stopped, and at its end; with
+/// adaptive steps at the last state whose steps do not depend on the end time. A checkpoint serves one run.
 template <class Steps = UniformSteps, class Flow, class... Observers>
 StepCount integrate(Flow& flow, const Steps& steps, const StartingValues<typename Flow::State>& start,
                     Checkpoint* checkpoint, Observers&&... observers) {

@@ -65,7 +65,7 @@ nlohmann::json identity_of_steps(const UniformSteps& steps);
 nlohmann::json identity_of_steps(const AdaptiveSteps& steps);
 nlohmann::json identity_of_steps(const GivenTimes& steps);
 
-/// Why a run that has come so far does not lead to this end; empty when it does.
+/// Why a run with this progress does not lead to this end; empty when it does.
 std::string objection_of_end(const UniformSteps& steps, const RunPosition& done);
 std::string objection_of_end(const AdaptiveSteps& steps, const RunPosition& done);
 std::string objection_of_end(const GivenTimes& steps, const RunPosition& done);
