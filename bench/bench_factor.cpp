@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One factorisation and its solves, beside those of other people in the same run (tests/peers): the two
-// systems of kll19 (5.1), 3 and 4 right-hand sides, beside CHOLMOD's; the block system of kll21 (3.5), 4
-// right-hand sides, beside ZMUMPS's; the same with two threads. Each number is the least of `rounds` rounds
-// in ms, in which everybody is measured once: a machine that is busy for a while is so for all of them.
+// One factorisation and its solves, compared with other libraries in the same run (tests/peers): the two
+// systems of kll19 (5.1), 3 and 4 right-hand sides, with CHOLMOD; the block system of kll21 (3.5), 4
+// right-hand sides, with ZMUMPS; the same with two threads. Each number is the minimum over `rounds` rounds
+// in ms. Each round measures every library once, so that a busy period of the machine affects all of them.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -124,7 +124,7 @@ void factor(benchmark::State& state, const Mesh& mesh) {
   counters["MiB_over_cholmod"] = double(spd.memory()) / cholmod.memory();
 }
 
-/// The rate of a large product on this core, to compare with.
+/// The rate of a large product on this core, for comparison.
 void dense_product(benchmark::State& state) {
   const int n = 1024;
   const Eigen::MatrixXd a = Eigen::MatrixXd::Random(n, n), b = Eigen::MatrixXd::Random(n, n);

@@ -4,7 +4,7 @@
 // medians. Then a whole step of the flow, loads included, on the dumbbell of kll19 §13.2 with 10.5k nodes, as
 // a ratio to the two factorisations and solves in it; and a step of Willmore flow (kll21) with about 10k and
 // 12k nodes, as a ratio to its factorisation and solves and to a naive one, and a step that has a
-// factorisation already. At last a step of Cahn-Hilliard (bk22 §9.2) on P1 with 10,242 nodes, motion and
+// factorisation already. Finally a step of Cahn-Hilliard (bk22 §9.2) on P1 with 10,242 nodes, motion and
 // loads included, as a ratio to a naive one.
 //
 // bench_factor.cpp then compares factorisations with those of other libraries, and peer_step.cpp writes a
@@ -138,7 +138,7 @@ void step(benchmark::State& state, int subdivisions) {
   state.counters["ratio"] = median(naive_samples) / total;
 }
 
-/// MeanCurvatureFlow::step as a run calls it, and what its factorisations and solves take of it.
+/// MeanCurvatureFlow::step as a run calls it, and the share of its factorisations and solves.
 void flow_step(benchmark::State& state) {
   Mesh mesh = lagrange_mesh(generate_mesh(dumbbell(), 0.0902), 2);
   project_nodes(mesh, dumbbell());
@@ -184,8 +184,8 @@ void willmore_load(const PointData<8>& p, Integrand<8, 4>& load) {
   add_g(at, load.value + 4);
 }
 
-/// A whole step of Willmore flow with extrapolated F, on the ellipsoid with half axes 2, 1, 1, beside its
-/// factorisation and solves and beside the naive one; and a step in which the factors of another one serve.
+/// A whole step of Willmore flow with extrapolated F, on the ellipsoid with half axes 2, 1, 1, compared with
+/// its factorisation and solves and with the naive one; and a step that reuses the factors of another one.
 void willmore_step(benchmark::State& state, double edge_length) {
   const Surface surface = ellipsoid(2, 1, 1);
   Mesh mesh = lagrange_mesh(generate_mesh(surface, edge_length), 2);

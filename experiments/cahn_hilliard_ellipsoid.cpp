@@ -50,7 +50,7 @@ const double epsilon = 0.5;
 const double largest_h = 0.84;  ///< 40, 160, 636, 2491, 9994 vertices on the levels 0 to 4
 const HalvedSteps time_steps{1, 0.2};
 const int smallest_step = 7;  ///< the i of the smallest published tau
-/// When the runs of the kind "order" begin: the discrete solution has forgotten by then that its initial
+/// When the runs of the kind "order" begin: by then the discrete solution no longer shows that its initial
 /// values are only close to a smooth one.
 const double orders_begin = 0.4;
 

@@ -40,7 +40,7 @@ using Flow = LinearisedCahnHilliard<PfhubSphere>;
 
 const double steady_time = 1.5e5, early_time = 300, first_step = 0.01, largest_tolerance = 2e-3;
 /// g is linearised again when c has changed by more than this in a node: else energy rises by up to 1e-3
-/// where a domain vanishes, which the root mean square hardly sees.
+/// where a domain vanishes, which the root mean square hardly shows.
 const double linearised_again_from = 0.03;
 
 /// The times of the published run until its third published energy.
@@ -93,9 +93,9 @@ AdaptiveSteps adaptive_steps(int bdf, double end_time, double tolerance) {
   return steps;
 }
 
-/// Whether the mesh alone holds a state of linear elements: goes on from it with quadratic elements on the
-/// same triangles. The energy after 100 time units, when the profiles of the interfaces have become those of
-/// the finer mesh, and after 5000 go into the row.
+/// Tests whether a state of linear elements is steady only because of the mesh: continues from it with
+/// quadratic elements on the same triangles. The energy after 100 time units, when the profiles of the
+/// interfaces have become those of the finer mesh, and after 5000 go into the row.
 void release(const Mesh& linear, const Field& c, Row& row) {
   Mesh mesh = lagrange_mesh(linear, 2);
   project_nodes(mesh, sphere(PfhubSphere::radius));

@@ -64,8 +64,8 @@ std::vector<Block> preset(bool paper) {
   return blocks;
 }
 
-/// (7.2) beside (2.19): the difference in u, how large it is beside the error of (2.19), how large the error
-/// of (7.2) is beside that, and the run time of (7.2) relative to (2.19).
+/// (7.2) compared with (2.19): the difference in u, its ratio to the error of (2.19), the ratio of the error
+/// of (7.2) to that, and the run time of (7.2) relative to (2.19).
 void measure_difference(const GrowingSphereRuns& on, Row& row) {
   State one, two;
   const double extrapolated = seconds_of([&] { one = on.end_of(with_mass(Variant::extrapolated)); });

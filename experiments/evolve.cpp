@@ -43,7 +43,8 @@ std::optional<Checkpoint> checkpoint_of(const EvolveConfig& config, const json& 
   return checkpoint;
 }
 
-/// How a run has ended that met an error: extinct where a surface that shrinks had no area left for the step.
+/// The status of a run that ended with an error: extinct if a shrinking surface had no area left for the
+/// step.
 std::string end_of(const EvolveConfig& config, RunRecorder& recorder, const NumericsError& error) {
   const bool extinct = dynamic_cast<const ExtinctionError*>(&error) != nullptr;
   if (extinct || recorder.empty()) return error.what();
@@ -54,7 +55,7 @@ std::string end_of(const EvolveConfig& config, RunRecorder& recorder, const Nume
   return std::string(error.what()) + "; " + config.entry->cure(config);
 }
 
-/// How a run that a signal has stopped ends.
+/// The status of a run that a signal has stopped.
 std::string stopped_status(const RunRecorder& recorder) {
   return format("stopped by signal %s at t = %g (step %d)", stop_signal() == SIGINT ? "SIGINT" : "SIGTERM",
                 recorder.newest().t, recorder.newest().step);

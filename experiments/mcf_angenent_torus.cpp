@@ -93,7 +93,7 @@ void measure_convergence(const SurfaceSpace& space, const ExactEvolution& exact,
 }
 
 /// Errors at the end against the same discretisation in space with small steps. It gives the starting values
-/// at t = 0.1, too: what the interpolation of the exact ones leaves in the fast modes has died out there.
+/// at t = 0.1, too: by then the fast modes that interpolated exact values contain have decayed.
 template <class Flow, class State>
 void measure_order(const SurfaceSpace& space, const ExactEvolution& exact, Flow& flow, const State& start,
                    const UniformSteps& steps, Row& row) {

@@ -60,8 +60,8 @@ Block otherwise(bool) {
           {"step", 0}};
 }
 
-/// The paper's setting, and what a good start, smaller step sizes and other methods make of it. BGN's scheme
-/// has one step, and no start.
+/// The paper's setting, and the same with accurate starting values, smaller step sizes and other methods.
+/// BGN's scheme is a one-step method and needs no starting procedure.
 std::vector<Block> preset(bool paper) {
   const char *kll = "mean_curvature", *euler = "cascade";
   const auto all_three = [](const Block& with) {
@@ -207,7 +207,7 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
   row.values = values(row.series);
 }
 
-/// Until the pinch: a step with what is recorded of it takes about 5 microseconds a node, one of BGN's
+/// Until the pinch: a step with its records takes about 5 microseconds a node, one of BGN's
 /// scheme 60.
 double cost(const Choice& choice) {
   const double nodes = choice.level() == 1 ? 10522 : 3000, steps = 0.083 / time_steps.tau(choice.step());

@@ -48,7 +48,7 @@ Block otherwise(bool paper) {
           {"step", paper ? range(0, 7) : range(2, 6)}};
 }
 
-/// The figures, and what claims are about beside them, on coarse meshes.
+/// The figures, and further runs for claims, on coarse meshes.
 std::vector<Block> preset(bool paper) {
   std::vector<Block> blocks = {
       {{"flow", "mean_curvature"}},

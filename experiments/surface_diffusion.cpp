@@ -133,7 +133,7 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
   describe_end(row);
 }
 
-/// A step with what is recorded of it takes about 5 microseconds a node.
+/// A step with its records takes about 5 microseconds a node.
 double cost(const Choice& choice) {
   const double nodes = 740 * std::pow(2.0, choice.level()), steps = time_steps(choice).count(choice.step());
   return 1.5 * nodes * steps * 5e-6;

@@ -48,7 +48,7 @@ const int recorded_steps = 50;
 struct Case {
   Surface surface;
   double largest_h, end_time, limit;
-  std::optional<ExactEvolution> exact;  ///< of the surfaces that stay where they are
+  std::optional<ExactEvolution> exact;  ///< of the stationary surfaces
 };
 
 const std::map<std::string, Case> cases = {

@@ -88,7 +88,7 @@ std::vector<Block> preset(bool paper) {
           {{"surface", "small_ellipsoid"}, {"setting", "paper"}, {"end_time", short_time}}};
 }
 
-/// Records the first steps and then every eighth, and what of the surface moves at the end.
+/// Records the first steps and then every eighth, and the motion of the surface at the end.
 struct Observer {
   const Choice& choice;
   RunRecorder& recorder;

@@ -15,7 +15,7 @@ from table import TableError, has_series, label_of, series
 STEM = "cahn_hilliard_energy"
 BDF = 2
 ENDS = {"bk22/fig6": 0.2, "bk22/fig7": 1.0}
-SETTLED = 0.4  # from here on the finest energies repeat themselves
+SETTLED = 0.4  # from here on the finest energies are periodic
 FINEST = 3  # that many meshes are shown there
 INSET = (0.34, 0.44, 0.42, 0.50)  # of the panel: left, bottom, width, height
 LEFT, RIGHT, TOP, BOTTOM, HEIGHT = 0.48, 0.17, 0.26, 0.36, 3.3  # inches; HEIGHT of the panel
@@ -54,7 +54,7 @@ def energy_figure(rows, end, epsilon, notes):
     axes = figure.add_axes([LEFT / style.WIDTH, below / height, (style.WIDTH - LEFT - RIGHT) / style.WIDTH,
                             HEIGHT / height])
     lines = list(zip(rows, style.line_styles(len(rows))))
-    for i, (_, line) in enumerate(lines):  # markers of neighbouring lines lie apart, those of one line equally far
+    for i, (_, line) in enumerate(lines):  # markers of neighbouring lines are separated, those of one line equally far
         line["markevery"] = (0.02 + 0.1 * i / len(rows), 0.1)
     draw_energies(axes, lines, (0, end))
     axes.set(xlim=(0, end), xlabel="$t$")

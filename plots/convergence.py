@@ -264,7 +264,7 @@ def _scale_errors(all_axes, panels, x_ranges):
 
 
 def _x_range(x):
-    """Ends of an axis that shows all of x, and something where nothing is to be shown."""
+    """Ends of an axis that shows all of x, and default ends without any x."""
     if not len(x):
         return np.array([-1.0, 0.0])
     pad = 0.06 * np.ptp(x) if np.ptp(x) > 0 else 0.3

@@ -93,7 +93,7 @@ def _finest_shared_mesh(rows):
 
 
 def _seconds_note(rows, bdf):
-    """The measured price of (7.2)."""
+    """The measured cost of (7.2)."""
     ratios = [(row.get("values") or {}).get("seconds_ratio") for row in rows if succeeded(row)]
     ratios = [ratio for ratio in ratios if isinstance(ratio, (int, float)) and 0 < ratio < math.inf]
     if not ratios:

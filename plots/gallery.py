@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What of the results is kept with the sources: small pictures in docs/ and the headline table of README.md.
+"""The results that are kept with the sources: small pictures in docs/ and the headline table of README.md.
 
 Usage: python3 plots/gallery.py VERDICTS FIGURES README DOCS
 Copies figures that the README shows, made small, and writes the table between the two headline marks of the README

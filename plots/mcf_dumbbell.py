@@ -103,7 +103,7 @@ def _same(a, b):
 
 
 def _finest(rows, start):
-    """Without BGN's scheme: it has one step, and its start says nothing."""
+    """Without BGN's scheme: it is a one-step method, and needs no starting procedure."""
     found = [row for row in rows if has_series(row) and method_of(row) in LABELS and label_of(row, "flow") != "bgn"
              and label_of(row, "start", "").startswith(start)]
     return [row for row in found if row.get("level", 0) == max(other.get("level", 0) for other in found)]

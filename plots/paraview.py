@@ -71,7 +71,7 @@ def open_snapshots(simple, path):
 
 
 def check_output(path):
-    """Raises InputError when no picture can be written there; ParaView would not say so."""
+    """Raises InputError when no picture can be written there; ParaView would not report it."""
     if not path.endswith(".png"):
         raise InputError(f"--output: found {path}, expected a file that ends in .png")
     folder = os.path.dirname(path) or "."

@@ -77,7 +77,7 @@ def _not_simply_holding(statements):
 
 
 def family_html(name, statements):
-    """How many of its members are met; on paper there are those that do not simply hold."""
+    """How many of its members are met; in print those that do not simply hold."""
     claims = [claim for statement in statements for claim in statement.claims]
     first = statements[0]
     line = " ".join([badge(Statement(first.stem, claims).verdict), text(first.families[name]["statement"]) + ":",
@@ -88,12 +88,12 @@ def family_html(name, statements):
 
 
 def statements_table(statements):
-    """Many checks are for the screen; on paper there are those that do not simply hold."""
+    """All checks on the screen; in print only those that do not simply hold."""
     rows = [row for statement in statements for row in claim_rows(statement)]
     if len(rows) <= PRINTED_CHECKS:
         return _table(statements)
     others = _table(_not_simply_holding(statements))
-    note = tag("p", f"{len(rows)} checks, all in {tag('code', 'claims.csv')}" + ("; the others just hold:" if others else
+    note = tag("p", f"{len(rows)} checks, all in {tag('code', 'claims.csv')}" + ("; those that do not simply hold:" if others else
                ", and all of them hold."), class_="note print")
     return (tag("details", tag("summary", f"{len(rows)} checks") + _table(statements), class_="screen") + note
             + tag("div", others, class_="print"))
@@ -210,14 +210,14 @@ def report_html(results, folder):
             f" of preset {' and '.join(presets)}."
             + (f" {results.elsewhere} more are checked at the other preset." if results.elsewhere else ""))
     missing = "".join(tag("li", html.escape(entry)) for entry in results.missing)
-    head = [tag("h1", "Evolving surface finite elements: what four papers state, and what comes out"),
+    head = [tag("h1", "Evolving surface finite elements: claims of four papers and their verdicts"),
             tag("p", f"esfem, {_date(results)}. {lead}", class_="lead"),
             tag("div", f"Not there: <ul>{missing}</ul>", class_="missing") if missing else "",
             tag("nav", tag("ol", contents)),
             tag("h3", "What holds", id="holds"), counts_table(placed),
             tag("p", "A statement is a sentence, a figure or a theorem of a paper that a computation can test; it may need "
                 "several checks. <i>Reproduced, but</i>: with a restriction that the remark names, or in some settings only. "
-                "<i>Corrected</i>: wrong as printed, and the remark says what is right. Independent values come from other implementations; "
+                "<i>Corrected</i>: wrong as printed, and the remark gives the correct version. Independent values come from other implementations; "
                 "findings are this project’s own. Orders are fitted to all runs at once; brackets are 95% intervals.",
                 class_="note"),
             tag("h2", "What is not reproduced, or corrected", id="exceptions"), exceptions_table(results)]

@@ -22,7 +22,7 @@ def run(experiment, draw, description, default_norm=None, norms=NORMS):
     `norms`: what --norm accepts.
     Without a default norm there is no --norm: the figures show series and snapshots, of singular runs as well, and
     `draw(table, folder)` gets the folder of the table, where snapshots are.
-    Anything wrong with the input is one line on standard error and exit 1.
+    Bad input gives one line on standard error and exit 1.
     """
     parser = _Parser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("table", help=f"results/PRESET/{experiment}.json")

@@ -18,7 +18,7 @@ CM = 1 / 2.54
 WIDTH = 17 * CM  # text width of a page, in inches
 RASTER_DPI = 400  # of pictures inside a PDF; lines and letters stay vectors
 
-# Shapes that stay apart at 4 pt; neighbours in the list differ most.
+# Shapes that are distinguishable at 4 pt; neighbours in the list differ most.
 MARKERS = ("o", "s", "^", "D", "v", "*", "<", "p", ">", "x")
 
 matplotlib.rcParams.update({
@@ -52,7 +52,7 @@ def line_styles(count):
     """Keyword arguments of `plot` for `count` lines in an order that means something (coarse to fine).
 
     Viridis without its pale end: lightness is monotone, so the order survives greyscale and colour blindness; the
-    markers tell the lines apart. Later markers are smaller, so that all of them show where lines coincide.
+    markers distinguish the lines. Later markers are smaller, so that all of them show where lines coincide.
     """
     colours = matplotlib.colormaps["viridis"]
     styles = []
@@ -65,7 +65,7 @@ def line_styles(count):
     return styles
 
 
-# Colours of Okabe and Ito, which colour-blind readers tell apart; dashes say it again in greyscale.
+# Colours of Okabe and Ito, which colour-blind readers can distinguish; dashes do so in greyscale.
 BLUE, VERMILLION, GREEN, SKY_BLUE, ORANGE, PURPLE = "#0072B2", "#D55E00", "#009E73", "#56B4E9", "#E69F00", "#CC79A7"
 DASHES = {"solid": "-", "dashed": (0, (5, 2)), "dotted": (0, (1, 1.3)), "dash-dot": (0, (6, 1.8, 1.2, 1.8)),
           "dash-dot-dot": (0, (6, 1.5, 1.2, 1.5, 1.2, 1.5)), "short": (0, (2.5, 1.5)), "long": (0, (10, 2)),

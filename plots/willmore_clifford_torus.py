@@ -23,7 +23,7 @@ NORM = "nodal_H1"  # what the authors plot
 PAPER = {"run": "convergence", "F": "extrapolated", "bdf": 1, "theta": "no"}
 FIGURES = {"isothermal": "kll21/fig7_4", "graded": "gallery/clifford_torus_graded"}
 FAILED = {"facecolor": "#F6D8C4", "edgecolor": style.VERMILLION}
-# Dark is accurate; the palest blue is still apart from the colour of failure, and black letters stay readable on all.
+# Dark is accurate; the palest blue still differs from the colour of failure, and black letters are readable on all.
 ACCURACY = LinearSegmentedColormap.from_list("accuracy", ["#5FA2CE", "#E6F0F7"])
 LEFT, RIGHT, CELL, HEADING, AXIS, LINE = 1.25, 0.05, 0.27, 0.24, 0.36, 0.165  # inches
 

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Arrays and objects in each other; what works on values recursively must not use up the stack.
+/// Nested arrays and objects; recursive work on values must not use up the stack.
 constexpr std::size_t deepest = 100;
 
 std::string content_of(const std::string& file) {
@@ -74,7 +74,7 @@ class OpenObjects {
   std::vector<Open> open_;
 };
 
-/// What a message of the parser says beside its own name and number.
+/// A message of the parser without its name and number.
 std::string without_tag(const std::string& message) {
   const std::size_t end = message.find("] ");
   return message.rfind("[json.exception", 0) == 0 && end != std::string::npos ? message.substr(end + 2)

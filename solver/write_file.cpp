@@ -55,7 +55,7 @@ bool write_all(int descriptor, const std::string& text) {
   return true;
 }
 
-/// Whether all of the text has got there; errno says why not. A full disk may show only when the data are
+/// Whether all of the text was written; errno says why not. A full disk may show only when the data are
 /// really written.
 bool write_through(const std::string& file, const std::string& text, bool synchronise) {
   const int descriptor = open_to_write(file);

@@ -24,7 +24,7 @@ bool have_parted(const EvolveConfig& config, const RunRecorder::CurvatureCompari
   if (found.rate_difference() > bound) return true;
   if (found.energy_difference() > (config.mesh.degree == 1 ? 2 * bound : bound)) return true;
   return found.deviation > bound &&
-         !config.variant.has("reinitialise");  // what comes from the surface has not parted from it
+         !config.variant.has("reinitialise");  // values recomputed from the surface do not deviate
 }
 
 std::string curvature_remark(const RunRecorder::CurvatureComparison& found, double t) {

@@ -7,31 +7,31 @@
 
 namespace esfem {
 
-/// What to tell about the mesh of a file when it has elements thinner than flows let elements become; "" for
-/// others, and for a mesh without a source. Such meshes run: what is thin at the start is no singularity.
+/// The remark on the mesh of a file with elements thinner than flows allow them to become; "" for others, and
+/// for a mesh without a source. Such meshes run: elements that are thin at the start are no singularity.
 std::string thin_elements_remark(const Mesh& mesh, const MeshOrigin& origin);
 
-/// evolve looks this often, and at the start and the end, whether nu and H of a flow
-/// are still the surface's: a look costs about as much as a step.
+/// evolve compares nu and H of a flow with the surface this often, and at the start and the end; a comparison
+/// costs about as much as a step.
 constexpr int steps_between_comparisons = 50;
 
-/// Whether nu and H are no longer those of the surface: beyond 25% in H nu - kappa, smoothed, or in the rates
-/// of area, or in the energies; 50% in these on P1 surfaces, whose kappa does not converge.
+/// Whether nu and H deviate from those of the surface: by more than 25% in H nu - kappa, smoothed, or in the
+/// rates of area, or in the energies; 50% in these on P1 surfaces, whose kappa does not converge.
 bool have_parted(const EvolveConfig& config, const RunRecorder::CurvatureComparison& found);
 
-/// That nu and H are not those of the surface, with the numbers.
+/// The remark that nu and H are not those of the surface, with the numbers.
 std::string curvature_remark(const RunRecorder::CurvatureComparison& found, double t);
 
 /// In its first step, however small, BGN's scheme moves nodes along the surface until they are spread evenly.
-/// That they have slid off its edges meanwhile is said, with what to try, when the step has taken more than
-/// 0.5% of the area, and more than three times what mean curvature flow takes; "" otherwise.
+/// The remark that they have slid off its edges, with advice, when the step has removed more than 0.5% of the
+/// area, and more than three times as much as mean curvature flow; "" otherwise.
 std::string sliding_remark(const Series& series);
 
-/// That a surface has shrunk to nothing: `end` is the time at which its area, extrapolated, is zero.
+/// The message that a surface has become extinct: `end` is the time at which its area, extrapolated, is zero.
 std::string extinction(double end, const Series& series);
 
-// What entries say of what to try when a run has ended at a singularity: keys of the configuration. Of 125
-// closed meshes that flows of mean curvature were tried on, each runs with one of these flows.
+// Advice of the entries when a run has ended at a singularity: keys of the configuration. Flows of mean
+// curvature were tested on 125 closed meshes; each of these runs with one of these flows.
 
 const std::string even_elements = "even elements (\"remesh\" of a mesh file)";
 const std::string resolving_mesh =

@@ -15,7 +15,7 @@
 
 namespace esfem {
 
-/// What a CONFIG.json of `evolve` asks for, with the defaults filled in.
+/// The contents of a CONFIG.json of `evolve`, with the defaults filled in.
 struct EvolveConfig {
   const Entry* entry = nullptr;            ///< of flow and problem
   std::optional<Surface> surface;          ///< the exact initial surface, where one is given
@@ -32,7 +32,7 @@ struct EvolveConfig {
   Quadrature rule;
   Settings variant, parameters;
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
-  std::string checkpoint;           ///< a file from which a stopped run goes on; empty: not wanted
+  std::string checkpoint;           ///< a file from which a stopped run resumes; empty: not wanted
   SnapshotPlan snapshots;
   struct {
     std::optional<double> curvature_size, radius_ratio, normal_length;  ///< instead of the defaults

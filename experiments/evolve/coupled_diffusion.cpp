@@ -64,7 +64,7 @@ void run_tumour_growth(const Run& run) {
   parameters.diffusion[1] = asked.number("D");
   parameters.reaction_rate = kinetics.gamma;
   const CoupledDiffusionState initial = start_of_tumour(run, kinetics);
-  // From nothing u grows to its steady state, which is no blow-up.
+  // u may grow from zero to its steady state, which is not a blow-up.
   const double size_of_u =
       std::max(initial.u.cwiseAbs().maxCoeff(), TumourGrowth::steady_state(kinetics).cwiseAbs().maxCoeff());
   run_flow(CoupledDiffusion(run.space, TumourGrowth(kinetics), parameters,

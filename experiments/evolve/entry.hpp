@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `evolve` knows of a flow. A flow, or a problem of one, is an entry; the parser, --help, --schema, the
-// dispatch and the list in the README follow from it.
+// The description of a flow for `evolve`. A flow, or a problem of one, is an entry; the parser, --help,
+// --schema, the dispatch and the list in the README follow from it.
 #pragma once
 
 #include <functional>
@@ -36,23 +36,23 @@ struct Entry {
   std::vector<std::vector<std::string>> starts = {};
   bool starts_beside_surface = false;
 
-  bool evolves_curvature = false;  ///< nu and H, which can part from those of the surface
+  bool evolves_curvature = false;  ///< nu and H, which can deviate from those of the surface
   bool can_shrink_to_nothing = false;
-  bool is_mean_curvature_flow = false;  ///< which has a longest possible life
+  bool is_mean_curvature_flow = false;  ///< for which the lifetime is bounded
   bool slides_nodes = false;            ///< in its first step
   bool records_kappa_energy = false;    ///< in the series
   bool lumps_linear_elements = false;   ///< takes the vertices as quadrature points by default
 
-  /// What to try when nu and H have parted from the surface, and when a run has ended at a singularity.
+  /// Advice when nu and H deviate from the surface, and when a run has ended at a singularity.
   std::string curvature_cure = "";
   std::function<std::string(const EvolveConfig&)> cure = {};
 };
 
-/// All entries; those of a flow stand together, and the first is its default problem.
+/// All entries; those of a flow are adjacent, and the first is its default problem.
 const std::vector<Entry>& entries();
 
-/// That of a configuration's "flow" and "problem" (empty: not given). Throws InputError, which lists what
-/// there is, for names that no entry has.
+/// That of a configuration's "flow" and "problem" (empty: not given). Throws InputError, which lists the
+/// known names, for names that no entry has.
 const Entry& entry_named(const std::string& flow, const std::string& problem, const std::string& source);
 
 // One for each file of this folder that describes flows.

@@ -89,7 +89,7 @@ void prepare_outputs(const EvolveConfig& config, const json& json, const std::st
 
 json run_identity(const EvolveConfig& config, const json& description) {
   json identity = description;
-  // What is compared as it is after reading, or changes no number of a step.
+  // Keys whose values are compared after reading, or that change no number of a step.
   for (const char* key : {"$schema", "output", "tau", "steps", "bdf", "start", "adaptive", "mesh", "degree",
                           "quadrature", "limits"})
     identity.erase(key);

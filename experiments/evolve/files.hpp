@@ -15,16 +15,16 @@ namespace esfem {
 void prepare_outputs(const EvolveConfig& config, const nlohmann::json& json, const std::string& source);
 
 /// What the numbers of a run depend on beside its time steps and its initial state, for its checkpoint: the
-/// mesh as it is used, not the name of its file; nothing of the output, and not how long the run is.
+/// mesh as it is used, not the name of its file; not the output, and not the length of the run.
 nlohmann::json run_identity(const EvolveConfig& config, const nlohmann::json& json);
 
-/// Writes all that is asked for; what cannot be written keeps nothing else from it. Returns `failures` with
-/// what could not be written.
+/// Writes all requested outputs; one that cannot be written does not prevent the others. Returns `failures`
+/// with those that could not be written.
 std::vector<std::string> write_outputs(const EvolveConfig& config, RunRecorder& recorder,
                                        const std::string& status, const nlohmann::json& config_json,
                                        const nlohmann::json& origin, std::vector<std::string> failures = {});
 
-/// The failures of write_outputs in one line, with what is left to do.
+/// The failures of write_outputs in one line, with advice.
 std::string joined(const std::vector<std::string>& failures, const EvolveConfig& config);
 
 }  // namespace esfem

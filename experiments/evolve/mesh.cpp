@@ -32,7 +32,7 @@ void raise_degree(ReadMesh& start, int degree) {
   if (start.mesh.nodes.rows() < n || start.mesh.nodes.topRows(n) != given.nodes) start.node_numbers.clear();
 }
 
-/// What "mesh" asks to be done with a file.
+/// Requested treatment of a mesh file.
 struct FileTreatment {
   std::optional<double> remesh;  ///< edge length
   bool curve = false;
@@ -61,8 +61,8 @@ Field values_at(const std::vector<MeshPoint>& points, const Mesh& mesh, const Fi
   return result;
 }
 
-/// The flat mesh of a file with edges of another length; its nodes on the smooth surface through the file's
-/// corners where that is what the mesh will stand for.
+/// The flat mesh of a file with edges of another length; its nodes lie on the smooth surface through the
+/// file's corners if the mesh will be curved.
 void remesh_file(ReadMesh& start, const std::string& file, const FileTreatment& treatment, int degree,
                  std::vector<std::string>& remarks) {
   const Mesh flat = std::move(start.mesh);

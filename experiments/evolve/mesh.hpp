@@ -12,7 +12,7 @@ namespace esfem {
 
 struct EvolveMesh {
   ReadMesh start;  ///< of degree k, on the surface where there is one; nodal values at its nodes
-  std::vector<std::string> remarks;  ///< what was changed or chosen, and what is to be expected of it
+  std::vector<std::string> remarks;  ///< changes, choices and their consequences
 };
 
 /// The initial mesh that "mesh" of a configuration describes: generated, or read, remeshed and curved. Where

@@ -19,26 +19,26 @@
 
 namespace esfem {
 
-/// A run: what is asked for, and what keeps it.
+/// A run: its configuration, and its records.
 struct Run {
   const EvolveConfig& config;
   const SurfaceSpace& space;
   RunRecorder& recorder;
   Checkpoint* checkpoint;
-  std::string& remark;  ///< on the result, for the status: empty, or that nu and H are not the surface's
+  std::string& remark;  ///< for the status: empty, or that nu and H deviate from the surface
 };
 
 /// The exact solution under mean curvature flow of the surfaces that have one.
 std::optional<ExactEvolution> exact_mean_curvature_solution(const EvolveConfig& config);
 
-/// The limits of a run; size_of_u: of what diffuses on the surface, where something does.
+/// The limits of a run; size_of_u: of the concentrations on the surface, if there are any.
 RegularityLimits limits_of(const Run& run, double size_of_u = 0);
 
-/// Says once that nu and H of the flow are no longer those of the surface.
+/// Warns once that nu and H of the flow are no longer those of the surface.
 void compare_curvature(const Run& run);
 
-/// What is looked at after step n, when it is recorded. Returns whether the run goes on: no signal has come.
-/// Throws ExtinctionError where a surface that shrinks will have no area left for the next step.
+/// Checks after step n, when it is recorded. Returns whether the run continues, that is, no signal has
+/// arrived. Throws ExtinctionError if a shrinking surface will have no area left for the next step.
 bool look_at_step(const Run& run, int n, double t);
 
 /// Equal steps as asked for; the start, where none is asked for, depends on whether a solution is known.
@@ -59,7 +59,7 @@ std::vector<double> units_of_controlled(double L) {
   return controlled<State>[0] == 'x' ? std::vector<double>(3, L) : std::vector<double>();
 }
 
-/// What the series of a flow have beside those of its surface.
+/// Series of a flow in addition to those of its surface.
 template <class State>
 void record_more(const Run&, const State&) {}
 void record_more(const Run& run, const CahnHilliardState& state);

@@ -12,7 +12,7 @@ void move_near_origin(EvolveConfig& config);
 
 /// Defaults with units hold for a surface with length 1. For one with length L (characteristic_length) they
 /// are multiplied by powers of L, times by those of its time scale: L², L⁴ for flows of fourth order, L³ for
-/// the separation of phases. The first of adaptive steps is besides at most a tenth of the run. reader: the
+/// the separation of phases. The first of adaptive steps is also at most a tenth of the run. reader: the
 /// whole configuration. Throws InputError where the adaptive grid is not one.
 void scale_defaults(const JsonReader& reader, EvolveConfig& config);
 

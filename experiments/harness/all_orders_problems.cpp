@@ -139,7 +139,7 @@ WillmoreFlow::Variant without_projections() {
   return variant;
 }
 
-/// The Clifford torus, which stays as it is, with theta.
+/// The Clifford torus, which is stationary, with theta.
 struct WillmoreOnTorus {
   using Flow = WillmoreFlow;
   static constexpr double major = 1;
@@ -209,7 +209,7 @@ void set_aside(const Errors& errors, const std::string& reason, Row& row) {
   }
 }
 
-/// Runs `body`; a run that ends at a singularity or by other numerics is an unstable one.
+/// Runs `body`; a run that ends at a singularity or with another NumericsError is unstable.
 template <class Body>
 void note_instability(Row& row, Body&& body) {
   row.values["unstable"] = 0;

@@ -10,10 +10,10 @@
 
 namespace esfem {
 
-/// What is computed of one flow. Lists by degree are for degree 1, 2, .., those by order for BDF1, BDF2, ..
+/// The runs of one flow. Lists by degree are for degree 1, 2, .., those by order for BDF1, BDF2, ..
 struct OrdersOfFlow {
   std::string flow, problem;
-  std::vector<std::string> quantities;  ///< those that the verdict on a run is about
+  std::vector<std::string> quantities;  ///< those that decide whether a run is stable
 
   /// Orders in h: largest edges on level 0, halved after two levels, and step sizes.
   HalvedSteps space;
@@ -46,18 +46,16 @@ struct OrderRun {
 
 /// Fills in a row, of which level, tau and steps are known.
 ///
-/// In space: errors against the exact solution at the end time. values: "<quantity>_<norm>_share", about how
-/// much of the error comes from the steps, (difference between tau and 2 tau)/(2^q - 1)/error. Where this is
-/// more than `largest_share` the error says nothing about h: it is the value "<quantity>_<norm>_hidden"
-/// instead.
-/// In time: errors against small steps on the same mesh, with tau; values: "<quantity>_<norm>_double", those
-/// with 2 tau.
-/// Both: the value "unstable", 1 when a run ends before its time, or when the errors of one of the flow's
-/// quantities are larger with tau than with 2 tau (in space: ten times); the errors of an unstable row
-/// are values "<quantity>_<norm>_unstable".
+/// In space: errors against the exact solution at the end time. values: "<quantity>_<norm>_share", about the
+/// part of the error that is caused by the steps, (difference between tau and 2 tau)/(2^q - 1)/error. Where
+/// this is more than `largest_share` the error does not show the order in h: it is stored as the value
+/// "<quantity>_<norm>_hidden" instead. In time: errors against small steps on the same mesh, with tau;
+/// values: "<quantity>_<norm>_double", those with 2 tau. Both: the value "unstable", 1 when a run ends before
+/// its time, or when the errors of one of the flow's quantities are larger with tau than with 2 tau (in
+/// space: ten times); the errors of an unstable row are values "<quantity>_<norm>_unstable".
 Row run_all_orders(const OrderRun& run, Row row);
 
-/// Where the steps make more of an error than this, it is not the error in space.
+/// If a larger part of an error is caused by the steps, it is not the error in space.
 constexpr double largest_share = 0.2;
 
 }  // namespace esfem

@@ -8,14 +8,14 @@ SHELL := bash
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
-# What is put in front of every cell, such as LAUNCH="srun -n1".
+# The prefix of every cell's command, such as LAUNCH="srun -n1".
 LAUNCH ?=
 BUILD ?= build
 BIN := $(BUILD)/bin
 cells := results/$(PRESET)/cells
 figures := $(if $(filter paper,$(PRESET)),figures,$(BUILD)/figures-check)
 plotted := $(foreach stem,$(STEMS),$(if $(wildcard plots/$(stem).py),$(stem)))
-# The pictures that take as long as all others come first.
+# The pictures that take longest come first.
 plotted := $(filter mcf_dumbbell,$(plotted)) $(filter-out mcf_dumbbell,$(plotted))
 
 # Of all experiments together, most expensive first: so the last runs to finish are short ones.

@@ -45,8 +45,8 @@ std::vector<std::string> names_of(const std::map<std::string, Value>& map) {
   return names;
 }
 
-/// An axis that an experiment has beside those of all: "degree", "bdf", "start", "level" (of the mesh) and
-/// "step" (k of tau = tau_0 2^-k). It is the option --NAME.
+/// An axis that an experiment has in addition to the common ones: "degree", "bdf", "start", "level" (of the
+/// mesh) and "step" (k of tau = tau_0 2^-k). It is the option --NAME.
 struct Axis {
   std::string name;
   std::vector<std::string> known;  ///< its values; none: it has positive numbers
@@ -86,11 +86,11 @@ class Choice {
 /// Which runs there are.
 struct Grid {
   std::vector<Axis> axes = {};           ///< of this experiment alone
-  std::vector<std::string> labels = {};  ///< axes that tell rows apart beside mesh and step size
-  /// The runs of preset paper and check. What a block does not say is as in `otherwise`.
+  std::vector<std::string> labels = {};  ///< axes that distinguish rows except mesh and step size
+  /// The runs of preset paper and check. Axes that a block does not have are as in `otherwise`.
   std::function<std::vector<Block>(bool paper)> preset;
-  /// As soon as one axis is given on the command line, all combinations of the given values and these. It
-  /// need not say anything of an axis with known names: then all of them.
+  /// As soon as one axis is given on the command line, all combinations of the given values and these. An
+  /// axis with known names may be omitted: then all of them.
   std::function<Block(bool paper)> otherwise;
   /// Options of all experiments that this one does not take, "mesh", "start", "quadrature", .., and why.
   std::map<std::string, std::string> refused = {};
@@ -98,7 +98,7 @@ struct Grid {
   std::function<bool(const Choice&)> admits = [](const Choice&) { return true; };
 };
 
-/// What the command line says of the grid.
+/// The part of the command line that concerns the grid.
 struct GridRequest {
   bool paper = true;
   Block given;  ///< values of axes
@@ -107,7 +107,7 @@ struct GridRequest {
 };
 
 /// The runs, each once. Throws InputError for an option that the experiment does not take, for runs that
-/// differ in an axis that no label tells, and when there are mesh files and a level has none.
+/// differ in an axis that no label shows, and when there are mesh files and a level has none.
 std::vector<Choice> choices(const Grid& grid, const GridRequest& request);
 
 /// The name of a run: its labels, "h" and the level, "tau" and the step, where it has these. Of an axis with

@@ -147,7 +147,7 @@ bool CommandLine::parse(int argc, const char* const* argv) {
   } catch (const CLI::ExtrasError& error) {
     throw InputError(one_line(error.what()) + "; accepted: " + accepted_options(app) + " (see --help)");
   } catch (const CLI::ParseError& error) {
-    // An argument that is missing is often one that was taken for an unknown option.
+    // A missing argument is often one that was parsed as an unknown option.
     const std::vector<std::string> unknown = app.remaining();
     const std::string more =
         unknown.empty() ? "" : "; unknown: " + unknown.front() + "; accepted: " + accepted_options(app);

@@ -8,8 +8,8 @@
 
 namespace esfem {
 
-/// The root mean square of the distances of the nodes x (N x 3) from the surface: what is left of an error of
-/// positions when nodes may slide.
+/// The root mean square of the distances of the nodes x (N x 3) from the surface: the error of positions up
+/// to tangential motion of the nodes.
 inline double distance(const Surface& surface, const Field& x) {
   double sum = 0;
   for (Eigen::Index i = 0; i < x.rows(); ++i) {

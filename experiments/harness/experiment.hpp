@@ -28,9 +28,10 @@ struct Options {
 struct Cell {
   std::string name;  ///< unique, no blanks or slashes, e.g. "h2_tau5"
   double cost;       ///< estimated seconds on one core
-  /// Completes the planned row: everything but cell, peak_memory_mb and seconds, which are those of earlier
-  /// processes where it goes on from a checkpoint. Other files of the run (snapshots, checkpoint_file) go
-  /// into `folder`, which may not exist yet; "": none are wanted. It is cells/STEM/CELL beside the table.
+  /// Completes the planned row: everything but cell, peak_memory_mb and seconds; only when it resumes from a
+  /// checkpoint it sets seconds, to those of earlier processes. Other files of the run (snapshots,
+  /// checkpoint_file) go into `folder`, which may not exist yet; "": none are wanted. It is cells/STEM/CELL
+  /// beside the table.
   std::function<Row(Row row, const std::string& folder)> run;
   Row planned = {};  ///< what is known beforehand (level, tau, steps, ...): the row of a run that fails
 };
@@ -46,7 +47,7 @@ struct Experiment {
   std::string help;  ///< what it computes, units, sample command lines: the head of --help
   std::function<void(CommandLine&)> add_options = [](CommandLine&) {};  ///< options of this experiment alone
   std::function<std::vector<Cell>(const Options&)> cells;
-  std::function<nlohmann::json(const Options&)> parameters;  ///< what the table's "parameters" say
+  std::function<nlohmann::json(const Options&)> parameters;  ///< the table's "parameters"
   RowRange fit_range;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the experiments' grids of runs have in common: step sizes, mesh levels, initial surfaces, and what a
-// row says of them.
+// Common parts of the experiments' grids of runs: step sizes, mesh levels, initial surfaces, and their
+// entries in a row.
 #pragma once
 
 #include <functional>
@@ -39,18 +39,18 @@ std::vector<int> mesh_levels(const Options& options, const std::vector<int>& oth
 void require_levels(const std::vector<int>& levels, int count, const std::string& counted);
 
 /// The initial surface of a run, from files[level], or made by `generate` when there are no files: elements
-/// of the given degree with their nodes on the surface. What the reader of a file changed is said on standard
-/// error.
+/// of the given degree with their nodes on the surface. Changes by the reader of a file are printed as a
+/// warning.
 Mesh initial_mesh(const std::vector<std::string>& files, int level, const std::function<Mesh()>& generate,
                   const Surface& surface, int degree);
 
 /// The same for a run: its files, level and degree.
 Mesh initial_mesh(const Choice& choice, const std::function<Mesh()>& generate, const Surface& surface);
 
-/// What the parameters of a table say of the meshes: the files, or `generated` when there are none.
+/// The entry on the meshes in the parameters of a table: the files, or `generated` when there are none.
 nlohmann::json mesh_parameter(const std::vector<std::string>& files, const std::string& generated);
 
-/// The row of a run as it is known beforehand, with the labels that tell it apart beside mesh and step size.
+/// The row of a run as it is known beforehand, with its labels.
 Row planned_row(int level, const HalvedSteps& steps, int k, nlohmann::json labels = nlohmann::json::object());
 
 /// Fills in h and nodes.
@@ -70,9 +70,9 @@ std::string run_to_end(const std::function<void()>& integrate, RunRecorder& reco
 /// every step), by which tests/crash finds checkpoints in short runs.
 double checkpoint_seconds();
 
-/// The checkpoint in the folder of a run, from which the cell goes on when it is started again; of another
-/// cell or another build of the program it is not taken. run_experiment removes it when the row is written.
-/// None without folder.
+/// The checkpoint in the folder of a run, from which the cell resumes when it is started again; a checkpoint
+/// of another cell or another build of the program is not used. run_experiment removes it when the row is
+/// written. None without folder.
 std::optional<Checkpoint> checkpoint_in(const std::string& folder, const std::string& cell);
 
 /// Integrates a flow, with a checkpoint in the folder of the run, to its end or its singularity: observers as

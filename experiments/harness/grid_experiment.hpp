@@ -21,7 +21,7 @@ struct GridExperiment {
   /// Completes the planned row (level, tau, steps, labels). Other files of the run (snapshots, checkpoint) go
   /// into `folder`, which may not exist yet; "": none are wanted.
   std::function<void(const Choice&, Row& row, const std::string& folder)> run;
-  nlohmann::json parameters = nlohmann::json::object();  ///< what a table says beside the choices
+  nlohmann::json parameters = nlohmann::json::object();  ///< parameters of a table in addition to the choices
   std::string meshes;                                    ///< how meshes are generated, for the same
   RowRange fit_range = {};
 };

@@ -15,9 +15,9 @@
 
 namespace esfem {
 
-/// A mesh and what all runs on it share: above all the positions of its nodes, at all steps of the smallest
-/// tau. Runs that are processes of their own compute them anew: that takes 0.03 microseconds a node and step,
-/// beside 12 for a step of a run with its errors, and reading them from a file would not take less.
+/// A mesh and the data that all runs on it share, mainly the positions of its nodes at all steps of the
+/// smallest tau. Runs in separate processes recompute them: that takes 0.03 microseconds per node and step,
+/// compared with 12 for a step of a run with its errors; reading them from a file would not be faster.
 struct MovingMesh {
   ManufacturedCahnHilliard exact;
   Mesh mesh;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is recorded of the spinodal decomposition on a sphere (PFHub benchmark 1d).
+// Records of the spinodal decomposition on a sphere (PFHub benchmark 1d).
 #pragma once
 
 #include <array>
@@ -23,9 +23,9 @@ const std::array<PublishedTime, 6> published_times = {{{"6.1051", 6.1051},
                                                        {"1000", 1000},
                                                        {"5006", 5006}}};
 
-/// Sees every step of a run; records the first 200, then every fourth, and the last one: c and mu, and the
-/// series energy, min_c, max_c and domains, the number of connected parts of the surface where c > 0.5, and
-/// where c < 0.5. An observer of integrate; space and recorder must outlive it.
+/// Observes every step of a run; records the first 200, then every fourth, and the last one: c and mu, and
+/// the series energy, min_c, max_c and domains, the number of connected parts of the surface where c > 0.5,
+/// and where c < 0.5. An observer of integrate; space and recorder must outlive it.
 class PfhubObserver {
  public:
   /// x: the nodes, at rest.
@@ -38,7 +38,7 @@ class PfhubObserver {
   /// the recorder's series.
   void describe(Row& row) const;
 
-  /// What the series cannot tell.
+  /// Values that do not follow from the series.
   nlohmann::json progress() const;
   void resume(const nlohmann::json& saved);
 

@@ -6,7 +6,7 @@
 
 namespace esfem {
 
-/// Says on standard error, when that is a terminal, which cell runs and how long the rest will take.
+/// Prints on standard error, when that is a terminal, which cell runs and the estimated remaining time.
 class Progress {
  public:
   /// `total_cost`: estimated seconds of all cells together.

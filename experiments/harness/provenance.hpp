@@ -12,13 +12,13 @@ namespace esfem {
 /// Path of the running executable.
 std::string executable_path();
 
-/// Tells one build of this program from another: a checksum of the executable.
+/// Identifies a build of this program: a checksum of the executable.
 nlohmann::json build_identity();
 
 /// Where the numbers come from: {"version", "git", "dirty", "compiler", "flags", "cpu", "threads", "date"
-/// (UTC, ISO 8601), "command"}. What concerns the build is read from provenance.json beside the executable,
-/// which every build renews: compiled in, the commit would relink every executable and outdate every result.
-/// "unknown" without that file.
+/// (UTC, ISO 8601), "command"}. The data of the build are read from provenance.json beside the executable,
+/// which every build renews: if the commit were compiled in, each one would relink every executable and
+/// outdate every result. "unknown" without that file.
 nlohmann::json provenance(int argc, char** argv);
 
 /// The provenance of a table collected from cells: date and command are those of `own`; of everything else

@@ -107,7 +107,7 @@ std::string cell_folder(const std::string& output, const std::string& stem, cons
   return (std::filesystem::path(output).parent_path() / "cells" / stem / cell.name).string();
 }
 
-/// The row is written: nothing is left to go on with.
+/// The row is written: the checkpoint is no longer needed.
 void remove_checkpoint(const std::string& folder) {
   std::error_code ignored;
   if (!folder.empty()) std::filesystem::remove(checkpoint_file(folder), ignored);
@@ -176,7 +176,7 @@ void write_json(const Table& table, const std::string& output) {
   write_file(output, to_json(table).dump(1) + "\n");
 }
 
-/// The JSON comes last: where it is, the others are.
+/// The JSON comes last: if it exists, so do the others.
 void write_table(const Table& table, const std::string& output) {
   const std::string base = without_extension(output);
   if (!base.empty()) {

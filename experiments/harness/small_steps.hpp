@@ -21,8 +21,8 @@ inline void require_starting_values(int k, int q, double tau, double begin) {
 }
 
 /// A solution with small steps, and runs with larger ones that it gives the starting values. Exact starting
-/// values are off the discrete solution by the error in space; how far is a matter of tau, and this would
-/// hide the orders 4 and 5.
+/// values differ from the discrete solution by the error in space; the effect depends on tau, and would hide
+/// the orders 4 and 5.
 template <class Flow>
 class SmallSteps {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Willmore flow of surfaces that it leaves as they are: what the experiments of kll21 §7.1 have in common.
+// Willmore flow of stationary surfaces: common parts of the experiments of kll21 §7.1.
 #pragma once
 
 #include <functional>
@@ -24,7 +24,7 @@ using WillmoreObserver = std::function<void(const WillmoreFlow::State&)>;
 /// Runs from exact values of x, nu, H, V and z, observes each state (unless `observe` is empty), and fills in
 /// the row: errors of x, nu and H and their series; nodal errors of v, V and z; those of V and z as (3.5b)
 /// gives them at the start, "V_initial" and "z_initial", also in the dual norm of §5.4, "nodal_dual"; the
-/// values of `record_energies`, and how far the energy is off as an error, "energy", "excess"; "end_time",
+/// values of `record_energies`, and the error of the energy, "energy", "excess"; "end_time",
 /// the time of the last state; the status of a run that ends at a singularity. A NumericsError passes
 /// through.
 void run_stationary_willmore(const SurfaceSpace& space, const Mesh& mesh, const ExactEvolution& exact,

@@ -7,10 +7,10 @@
 
 namespace esfem {
 
-/// Says "program: text" on standard error; nothing for an empty text.
+/// Prints "program: text" on standard error; nothing for an empty text.
 void warn(const std::string& text);
 
-/// read_mesh; what the reader changed is said on standard error.
+/// read_mesh; changes by the reader are printed as a warning.
 Mesh mesh_from_file(const std::string& file);
 
 }  // namespace esfem

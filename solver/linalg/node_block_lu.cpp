@@ -5,7 +5,7 @@
 
 #include "solver/error.hpp"
 
-// Present when UMFPACK's BLAS is OpenBLAS, which starts threads that nobody asked for.
+// Present when UMFPACK's BLAS is OpenBLAS, which starts threads by default.
 extern "C" void openblas_set_num_threads(int) __attribute__((weak));
 
 namespace esfem {

@@ -217,7 +217,7 @@ void SymmetricFactor<T, b>::factorise_front(int f, const Load& load, Workspace& 
   for (int c = front.children_begin; c < front.children_end; ++c) extend_add(tree_.children[c], matrix, to_U);
 }
 
-/// What a pivot is compared with: the diagonal of the matrix; where it may vanish, the largest entry of the
+/// The scale of a pivot: the diagonal of the matrix; where it may vanish, the largest entry of the
 /// row that is in the block of its node.
 template <class T, int b>
 double SymmetricFactor<T, b>::scale_of_row(const PackedMatrix<T>& L, int row) const {

@@ -183,7 +183,7 @@ void check_fans(const Mesh& mesh, const MeshOrigin& origin, const std::vector<in
   }
 }
 
-/// Neighbours have the same nodes on their edge, and no node plays two parts.
+/// Neighbours have the same nodes on their edge, and no node has two roles.
 void check_curved_edges(const Mesh& mesh, const MeshOrigin& origin, const std::vector<int>& twin) {
   const int on_edge = mesh.degree - 1;
   const auto edge_node = [&](int half_edge, int i) {
@@ -197,7 +197,7 @@ void check_curved_edges(const Mesh& mesh, const MeshOrigin& origin, const std::v
                  " has there " + origin.node(edge_node(twin[h], on_edge - 1 - i)) +
                  ", the same node expected");
 
-  // The part of a node: -1 a corner, else the half-edge (the smaller of two) or, after those, the element.
+  // The role of a node: -1 a corner, else the half-edge (the smaller of two) or, after those, the element.
   constexpr int none = -2;
   std::vector<int> part(mesh.nodes.rows(), none);
   for (int e = 0; e < mesh.elements.rows(); ++e)

@@ -45,7 +45,7 @@ Mat3 frame_around(const Vec3& normal) {
 }
 
 /// Sectors around one, ring by ring, until there are `wanted`, at most four rings. Where the surface turns
-/// away it is no graph over the tangent plane any more: no neighbours are looked for there.
+/// away it is no longer a graph over the tangent plane: no neighbours are collected there.
 std::vector<int> sectors_around(int centre, int wanted, const std::vector<Vec3>& normals,
                                 const std::vector<std::vector<int>>& neighbours) {
   const int most_rings = 4;

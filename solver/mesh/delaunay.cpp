@@ -100,7 +100,7 @@ Mesh extract(const Complex& complex, const Surface& surface) {
 }  // namespace
 
 Mesh delaunay_surface_mesh(const Surface& surface, const SizeFunction& size) {
-  CGAL::get_default_random() = CGAL::Random(0);  // the mesher shoots its first rays with it
+  CGAL::get_default_random() = CGAL::Random(0);  // the mesher takes its first rays from it
   const double radius =
       1.5 * surface.bounding_radius;  // rays are clipped to this ball: the surface lies well inside
   const auto level = [&surface](const Point& p) { return surface.level(to_vector(p)); };

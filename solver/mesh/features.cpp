@@ -45,8 +45,8 @@ std::vector<bool> sharp_edges(const std::vector<Vec3>& normals, const std::vecto
   return sharp;
 }
 
-/// On a curved surface a triangle whose corner almost lies on the opposite side is as steep as it likes:
-/// where it stands out of its neighbours, it gets the normal of the one across the long side, with which it
+/// On a curved surface the normal of a triangle whose corner almost lies on the opposite side is arbitrary:
+/// where it differs from its neighbours, it gets the normal of the one across the long side, with which it
 /// forms a sound quadrilateral.
 void lay_down_caps(const Mesh& mesh, const std::vector<int>& twin, const std::vector<bool>& sharp,
                    std::vector<Vec3>& normals) {

@@ -8,7 +8,7 @@ namespace esfem {
 
 namespace {
 
-/// Goes behind the line that closes a section.
+/// Moves past the line that closes a section.
 void close_section(MshRecords& records, const std::string& name) {
   records.close();
   const std::string end = "$End" + name;

@@ -176,7 +176,7 @@ RemeshedSurface remesh(const Mesh& mesh, double edge_length, double feature_angl
     result.on_input = located(result.mesh.nodes, mesh, input);
   } catch (const InputError&) {
     throw;
-  } catch (const std::exception&) {  // what CGAL says is several lines about its source
+  } catch (const std::exception&) {  // CGAL's message is several lines about its source
     throw InputError(
         format("remeshing with edge length %g failed, expected a surface that does not intersect "
                "itself, or another edge length",

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The format: https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html, in the part of it that
-// VTK 9, ParaView 5 and meshio 5 have in common.
+// The format: https://docs.vtk.org/en/latest/vtk_file_formats/vtkxml_file_format.html, restricted to the
+// common part of VTK 9, ParaView 5 and meshio 5.
 #include "solver/mesh/write_vtu.hpp"
 
 #include <algorithm>

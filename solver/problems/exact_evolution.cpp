@@ -36,7 +36,7 @@ Field ExactEvolution::nodal_values(const Field& x, double t) const {
     for (int i = 0; i < 3; ++i)
       for (int lane = 0; lane < pack_size; ++lane) position[i][lane] = x(std::min(first + lane, rows - 1), i);
     SurfacePoints points = now.closest_points(position);
-    // The points lie on the surface to round-off, and are to be what they are.
+    // The points lie on the surface to round-off, and are kept unchanged.
     std::copy(position, position + 3, points.y);
     fields(t, points, at_points);
     for (int l = 0; l < values.cols(); ++l)

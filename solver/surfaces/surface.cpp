@@ -155,7 +155,7 @@ Surface sphere(double radius) {
   };
   Surface surface = make_surface("sphere", d, radius, radius, 2, {{"radius", radius}});
   surface.own_closest_point = [radius](const Vec3& x) -> Vec3 { return x * (radius / x.norm()); };
-  // The same as by Jets, in a tenth of their time: error norms ask for it in every quadrature point.
+  // The same as by Jets, in a tenth of their time: error norms need it in every quadrature point.
   surface.level_set = [radius](const Vec3& y) -> LevelSetJet {
     return {(y.squaredNorm() - radius * radius) / (2 * radius), y / radius, Mat3::Identity() / radius};
   };
@@ -189,7 +189,7 @@ Pack larger(const Pack& a, const Pack& b) {
   return a > b ? a : b;
 }
 
-/// closest_point_of_ellipsoid for pack_size points: the lanes that are done first go on at their roots. There
+/// closest_point_of_ellipsoid for pack_size points: lanes that have converged continue at their roots. There
 /// grad d = D y and Hess d = D with D = diag(1/a_i²).
 SurfacePoints closest_points_of_ellipsoid(const Vec3& axes, const Pack (&x)[3]) {
   const Vec3 squares = axes.cwiseAbs2(), excess = squares.array() - squares.minCoeff();
@@ -268,7 +268,7 @@ Surface ellipsoid(double a, double b, double c) {
   surface.own_closest_point = [axes = Vec3(a, b, c)](const Vec3& x) {
     return closest_point_of_ellipsoid(axes, x);
   };
-  // What Jets would find, without them: errors on moving ellipsoids take it in every quadrature point.
+  // The result of Jets, without them: errors on moving ellipsoids need it in every quadrature point.
   surface.level_set = [weights = Vec3(1 / (a * a), 1 / (b * b), 1 / (c * c))](const Vec3& x) -> LevelSetJet {
     const Vec3 gradient = weights.cwiseProduct(x);
     return {0.5 * (gradient.dot(x) - 1), gradient, weights.asDiagonal()};

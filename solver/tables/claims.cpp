@@ -187,7 +187,7 @@ double selected_number(const Row& row, const Claim& claim) {
   return norms->second.at(claim.norm);
 }
 
-/// What a run that ended at a singularity has measured until then counts; it has no errors over the whole
+/// A run that ended at a singularity counts with its measurements until then; it has no errors over the whole
 /// time.
 bool is_complete(const Row& row, const Claim& claim) {
   return claim.kind == Claim::value ? !failed(row) : row.status == "ok";

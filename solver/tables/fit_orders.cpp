@@ -23,7 +23,7 @@ constexpr double loss_scale = 0.2;
 /// A model that fits to 0.1% is not improved by another term: no computed errors follow a power law more
 /// closely.
 constexpr double noise_floor = 1e-3;
-/// An order with a larger standard error does not tell two integer orders apart.
+/// An order with a larger standard error does not distinguish two integer orders.
 constexpr double largest_standard_error = 0.5;
 /// Rows with larger residuals do not follow the model.
 constexpr double largest_residual = 0.5;
@@ -178,7 +178,7 @@ double residual_variance(const std::vector<double>& residuals, int degrees_of_fr
   return psi_squared / degrees_of_freedom / (mean_slope * mean_slope);
 }
 
-/// Whether the Jacobian has full rank. ceres::Covariance finds out too, but writes to standard error then.
+/// Whether the Jacobian has full rank. ceres::Covariance detects it, too, but then writes to standard error.
 bool has_full_rank(ceres::Problem& problem, const std::vector<double*>& free) {
   ceres::Problem::EvaluateOptions options;
   options.parameter_blocks = free;
@@ -230,7 +230,7 @@ std::optional<Solution> solve(const Data& data, const Model& model) {
   if (!is_followed(residuals(data, *solution), unknowns)) return std::nullopt;
   if (!find_standard_errors(data, *solution)) return std::nullopt;
   const double mean_loss = std::max(solution->cost / data.rows(), noise_floor * noise_floor);
-  // Bayesian information criterion: a further term has to pay for its parameters.
+  // Bayesian information criterion: a further term is penalised for its parameters.
   solution->criterion = data.rows() * std::log(mean_loss) + unknowns * std::log(data.rows());
   return solution;
 }

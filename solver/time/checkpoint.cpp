@@ -26,7 +26,7 @@ std::string shown(const json& value) {
   return value.is_null() ? "none" : value.dump();
 }
 
-/// What is asked for and is not there, or is there otherwise, in words; "" when `found` is `asked`. `where`
+/// The differences of `found` from `asked`, in words; "" when they are equal. `where`
 /// follows each of the keys.
 std::string difference(const json& found, const json& asked, const std::string& where = "") {
   std::string words;

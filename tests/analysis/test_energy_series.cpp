@@ -136,7 +136,7 @@ TEST_F(ResumedEnergy, EqualsThatOfARunThatWasNotStopped) {
   EXPECT_EQ(whole.observed, 31);
   fs::remove(folder / "checkpoint");
   run(17);
-  EXPECT_EQ(run(24).observed, 8) << "it goes on after step 16, the last one that was saved";
+  EXPECT_EQ(run(24).observed, 8) << "it continues after step 16, the last one that was saved";
   const Outcome resumed = run(-1);
   EXPECT_EQ(resumed.observed, 7);
   EXPECT_EQ(resumed.series, whole.series) << "to the last bit";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run that was stopped goes on as if it had not been: states, series and snapshots to the last bit.
+// A run that was stopped continues as if it had not been: states, series and snapshots to the last bit.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

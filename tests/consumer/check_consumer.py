@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Is the library what others can use? Installs it below the build folder, configures tests/consumer/ (a project of its
+"""Can other projects use the library? Installs it below the build folder, configures tests/consumer/ (a project of its
 own) against the installed copy, builds it with -O2 alone, and runs it:
 
 * shrink: area and volume of a sphere under mean curvature flow, R(t) = sqrt(R(0)² - 4t), and those of evolve in this

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The default rules are so good that the next better one does not change what the sphere experiment measures.
+// The default rules are so accurate that the next better one does not change the results of the sphere
+// experiment.
 #include <gtest/gtest.h>
 
 #include <cmath>

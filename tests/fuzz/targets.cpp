@@ -54,7 +54,7 @@ struct Position {
   static constexpr NamedField<Position> fields[] = {{"x", &Position::x}};
 };
 
-/// Whether a run of two nodes goes on from its checkpoint.
+/// Whether a run of two nodes resumes from its checkpoint.
 bool goes_on(const std::string& file) {
   History<Position> past(2);
   RunPosition done;

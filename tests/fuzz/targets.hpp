@@ -7,7 +7,7 @@
 
 namespace esfem {
 
-/// Everything that reads what others have written, by the name of its corpus: a function of a file's content
+/// All readers of input files, by the name of their corpus: a function of a file's content
 /// that returns, or throws InputError or NumericsError. Anything else (another exception, a crash, a hang, a
 /// leak) is a fault.
 const std::map<std::string, std::function<void(const std::string& content)>>& fuzz_targets();

@@ -22,7 +22,7 @@ class EvolveProgram : public testing::Test {
   const std::filesystem::path folder =
       std::filesystem::path(ESFEM_BINARY_DIR) / "test_evolve" / std::to_string(getpid());
   const std::string nodal = (folder / "nodal.json").string(), series = (folder / "series.json").string();
-  std::string message;        ///< what the last run said on standard error
+  std::string message;        ///< what the last run printed on standard error
   unsigned user = geteuid();  ///< who runs the program; root may be anybody
 
   void SetUp() override { std::filesystem::create_directories(folder); }

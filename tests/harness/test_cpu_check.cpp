@@ -22,7 +22,7 @@ class CpuCheck : public testing::Test {
   const std::filesystem::path folder = std::filesystem::path(ESFEM_BINARY_DIR) / "test_cpu_check";
   CpuCheck() { std::filesystem::create_directories(folder); }
 
-  /// Exit code of a command, and what it said on standard error.
+  /// Exit code of a command, and what it printed on standard error.
   std::pair<int, std::string> run(const std::string& command) const {
     const std::string said = (folder / "said").string();
     const int status = std::system((command + " 2>'" + said + "'").c_str());
@@ -47,8 +47,8 @@ TEST_F(CpuCheck, AnotherCpuIsToldSoInOneLine) {
 }
 
 #ifdef __x86_64__
-/// What the compiler says of a source with these flags that includes the header of Packs, for a library whose
-/// Packs have this width.
+/// The compiler's messages on a source with these flags that includes the header of Packs, for a library
+/// whose Packs have this width.
 std::pair<int, std::string> CpuCheck::include_pack(int width, const std::string& flags) const {
   const std::filesystem::path library = folder / ("width_" + std::to_string(width));
   std::filesystem::create_directories(library / "solver");

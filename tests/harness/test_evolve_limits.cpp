@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What evolve calls a singularity, an extinction or a blow-up, and what it says when nu and H are not the
-// surface's.
+// What evolve treats as a singularity, an extinction or a blow-up, and what it reports when nu and H are not
+// the surface's.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -32,7 +32,7 @@ struct EvolveRestart : EvolveProgram {
     all["output"] = output;
     return config(all);
   }
-  /// A run that nobody would wait for.
+  /// A run that takes too long to wait for.
   json endless(const json& output) const { return with_output(output, {{"steps", 100000000}}); }
   /// Times of the snapshots in a collection.
   std::vector<double> times(const std::string& pvd) const {
@@ -43,7 +43,7 @@ struct EvolveRestart : EvolveProgram {
       found.push_back(std::stod((*match)[1]));
     return found;
   }
-  /// Nodal values and series but for what says when and how they were made.
+  /// Nodal values and series without their provenance.
   json results() const {
     json all = {read_json(nodal), read_json(series)};
     for (json& file : all)

@@ -42,7 +42,7 @@ TEST(McfDumbbell, KeepsWhatItHasComputedUntilTheSingularity) {
     EXPECT_THAT(row.status, StartsWith("singular at t = 0.0"));
     const std::vector<double>& t = row.series.at("t");
     EXPECT_GT(t.back(), 0.05);
-    EXPECT_LT(t.back(), 0.12) << "it does not go on after the pinch";
+    EXPECT_LT(t.back(), 0.12) << "it does not continue after the pinch";
     for (const auto& [name, values] : row.series) {
       EXPECT_EQ(values.size(), t.size()) << name;
       for (double value : values) ASSERT_TRUE(std::isfinite(value)) << name;
@@ -52,7 +52,7 @@ TEST(McfDumbbell, KeepsWhatItHasComputedUntilTheSingularity) {
     const std::string flow = row.labels.at("flow").get<std::string>();
     EXPECT_EQ(row.series.count("min_nu"), flow == "mean_curvature") << "normals of its own";
 
-    // The nodes come close to each other beside the widest circles, but for BGN's scheme.
+    // The nodes become dense near the widest circles, except with BGN's scheme.
     EXPECT_GT(row.series.at("smallest_elements").front(), 0.5);
     if (flow == "bgn") {
       EXPECT_GT(row.values.at("smallest_elements_at_0.06"), 0.75);

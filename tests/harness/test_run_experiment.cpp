@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs the fake experiment as a stranger would: command lines in, exit codes, text and tables out.
+// Runs the fake experiment as a user does: command lines in, exit codes, text and tables out.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>

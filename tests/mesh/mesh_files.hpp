@@ -131,7 +131,8 @@ inline double corner_area(const Mesh& mesh) {
   return area;
 }
 
-/// An ellipsoid of 42 nodes and 80 triangles with 6 digits: area and volume computed apart from this program.
+/// An ellipsoid of 42 nodes and 80 triangles with 6 digits: area and volume computed independently of this
+/// program.
 inline Mesh small_ellipsoid() {
   Mesh mesh = icosphere(1, 1);
   mesh.nodes *= Vec3(1, 0.8, 0.6).asDiagonal();
@@ -161,7 +162,7 @@ inline Mesh together(const Mesh& a, const Mesh& b) {
   return mesh;
 }
 
-/// What a parser says against a text, and what is said against the surface after repairs; "" when all is
+/// The complaint of a parser about a text, or about the surface after repairs; "" when all is
 /// well.
 /// The error that a mesh gives, or "" when it is accepted.
 inline std::string check_complaint(Mesh mesh) {

@@ -27,7 +27,7 @@ inline std::string content(const std::string& file) {
   return text.str();
 }
 
-/// What the error of an action says, in one line.
+/// The error message of an action, in one line.
 template <class Error, class Action>
 std::string complaint(Action action) {
   try {

@@ -118,7 +118,7 @@ TEST(Orient, CavitiesKeepTheirOrientationRelativeToTheBody) {
   EXPECT_EQ(check_closed_surface(mesh, "here"),
             "2 components; orientation of 2 components were inward: turned");
   EXPECT_NEAR(enclosed_volume(mesh), hollow, 1e-13);
-  // Something in the cavity, and another body beside.
+  // A body in the cavity, and another one outside.
   mesh = together(together(inside_out(grain), cavity), together(other, inside_out(body)));
   EXPECT_EQ(check_closed_surface(mesh, "here"),
             "4 components; orientation of 3 components were inward: turned");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the parser of Gmsh files refuses, and where it says the fault is.
+// What the parser of Gmsh files refuses, and where it locates the error.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -95,7 +95,7 @@ TEST(ReadOff, NamesTheLine) {
   EXPECT_THAT(complaint(replaced(plain, x, "0.1 0.2 1e400")), StartsWith("a: line 4: '1e400' found"));
   EXPECT_THAT(complaint(replaced(plain, x, "0.1 0.2 nan")), StartsWith("a: line 4: coordinate 'nan'"));
   EXPECT_THAT(complaint(replaced(plain, x, "0.1 0.2 +-1")), StartsWith("a: line 4: '+-1' found"));
-  // Every later word takes the place of the one before: the first line that is short is said, too.
+  // Every later word is read in the place of the one before, so the message names the first short line, too.
   EXPECT_THAT(complaint(replaced(plain, x, "0.1 0.2")), HasSubstr("line 4 has 2 numbers, 3 coordinates"));
   const std::string element = "\n3 " + corners(ellipsoid, 1, 0);
   EXPECT_THAT(complaint(replaced(plain, element, "\n3 7.7 1 2")), StartsWith("a: line 46: '7.7' found"));

@@ -48,7 +48,7 @@ double worst_ratio(const Mesh& mesh) {
   return mesh_quality(mesh.elements, mesh.nodes).min_radius_ratio;
 }
 
-/// Largest distance of a node from the point of the given mesh that it is said to lie on.
+/// Largest distance of a node from the point of the given mesh on which it should lie.
 double distance_from_input(const RemeshedSurface& found, const Mesh& input) {
   double largest = 0;
   for (int i = 0; i < found.mesh.nodes.rows(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is mended in a mesh, and what is left as it is.
+// What is repaired in a mesh, and what is left unchanged.
 #include <gmock/gmock.h>
 
 #include <random>

@@ -412,7 +412,7 @@ def judge(arguments):
 
 
 def take_away(packages, found, lists, apt):
-    """Takes each of the packages away and says what becomes of it."""
+    """Removes each of the packages in turn and reports the result."""
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         results = list(pool.map(lambda package: without(package, found, lists, apt), packages))
     for kind in ("missed", "implied"):

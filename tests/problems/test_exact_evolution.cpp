@@ -27,7 +27,7 @@ std::pair<Eigen::VectorXd, Eigen::MatrixXd> fields_at(const ExactEvolution& exac
   return {value, gradient};
 }
 
-/// The largest difference of a value or gradient to what the surface's level set says, in the nodes x.
+/// The largest difference of a value or gradient from that of the surface's level set, in the nodes x.
 double deviation_from_level_set(const ExactEvolution& exact, const Surface& surface, const Field& x) {
   double largest = 0;
   const auto compare = [&](const auto& difference) {

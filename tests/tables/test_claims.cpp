@@ -212,7 +212,7 @@ TEST(Claims, VariantsAreNotMixed) {
   }
   EXPECT_THAT(check(order_claim(), json::object(), table).reason, HasSubstr("labels in 'where' select one"));
   EXPECT_NEAR(check(order_claim(), {{"where", {{"flow", "dziuk"}}}}, table).value, 1, 1e-6)
-      << "one label is enough to tell them apart";
+      << "one label is enough to distinguish them";
   EXPECT_TRUE(check(order_claim(), {{"where", {{"bdf", 2.0}}}}, table).measured) << "2.0 is 2";
   for (Row& row : table.rows) row.labels["bdf"] = 2;
   EXPECT_THAT(check(order_claim(), {{"where", {{"bdf", 2}}}}, table).reason,

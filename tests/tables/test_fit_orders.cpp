@@ -82,7 +82,7 @@ TEST(FitOrders, NoiseOfTenPercentIsInsideTheInterval) {
   RecordProperty("covered_tau", covered_tau);
   EXPECT_GE(covered_h, 0.8 * trials);
   EXPECT_GE(covered_tau, 0.8 * trials);
-  EXPECT_LT(width, 0.3) << "an interval that covers by being wide says nothing";
+  EXPECT_LT(width, 0.3) << "an interval that covers only because it is wide is useless";
 }
 
 TEST(FitOrders, OutliersNeedTheRobustLoss) {

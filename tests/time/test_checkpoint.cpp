@@ -87,7 +87,7 @@ struct CheckpointedRun : testing::Test {
     text << stream.rdbuf();
     return text.str();
   }
-  /// The file is refused and left as it is; a run that may start afresh does so and says why.
+  /// The file is refused and left unchanged; a run that may start afresh does so and reports why.
   void expect_unusable(const std::string& why) {
     const std::string before = bytes();
     try {

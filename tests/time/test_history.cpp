@@ -93,7 +93,7 @@ TEST(History, AStepToATimeIsExactOnUnequalSteps) {
   EXPECT_THROW(history.step_to(t, 4), InputError);
 }
 
-/// The error at t = 1 of BDF2 on steps that are by turns short and long.
+/// The error at t = 1 of BDF2 on steps that are alternately short and long.
 double error_on_unequal_steps(int pairs, bool takes_note) {
   LinearOde ode;
   History<LinearOde::State> history(2);

@@ -136,7 +136,7 @@ TEST(Integrate, CanStartLaterAndAsksEachObserver) {
   EXPECT_EQ(second, first);
 }
 
-/// What a run that is expected to fail says; empty when it does not fail.
+/// The error message of a run that is expected to fail; empty when it does not.
 template <class Flow, class Error = NumericsError>
 std::string failure(Flow flow, const UniformSteps& grid,
                     const std::function<LinearOde::State(double)>& exact_state = LinearOde::exact) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run with a later end goes on from the checkpoint of a shorter one, with the numbers of an undisturbed
+// A run with a later end resumes from the checkpoint of a shorter one, with the numbers of an undisturbed
 // run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
