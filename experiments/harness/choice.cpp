@@ -105,7 +105,9 @@ std::vector<Choice> choices(const Grid& grid, const GridRequest& request) {
   }
   std::vector<Choice> choices;
   std::map<std::string, Point> seen;
-  for (const Point& point : points) {
+  for (Point& point : points) {
+    for (const auto& [axis, values] : grid.implied(Choice(point, request.meshes, request.rule)))
+      point[axis] = *values.begin();
     const Choice choice(point, request.meshes, request.rule);
     if (files > 0 && choice.level() >= files)
       throw InputError(format("--levels: found %d, expected less than %d, the number of --mesh files",

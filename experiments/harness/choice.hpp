@@ -94,6 +94,9 @@ struct Grid {
   std::function<Block(bool paper)> otherwise;
   /// Options of all experiments that this one does not take, "mesh", "start", "quadrature", .., and why.
   std::map<std::string, std::string> refused = {};
+  /// Values that follow from others, such as BDF1 for a scheme of first order; they replace those of the
+  /// combination.
+  std::function<Block(const Choice&)> implied = [](const Choice&) { return Block(); };
   /// Whether a combination is a run of its own; throws InputError for one that cannot be computed.
   std::function<bool(const Choice&)> admits = [](const Choice&) { return true; };
 };

@@ -136,6 +136,14 @@ TEST(Choices, TheGridSaysWhichCombinationsAreRuns) {
   EXPECT_EQ(refusal(grid, given({{"bdf", 5}})), "--bdf: no");
 }
 
+TEST(Choices, WhatFollowsFromOtherValuesReplacesThem) {
+  Grid grid = sample();
+  grid.implied = [](const Choice& choice) { return choice["flow"] == "other" ? Block{{"bdf", 1}} : Block(); };
+  EXPECT_THAT(names(grid, given({{"flow", {"one", "other"}}, {"bdf", {2, 4}}, {"step", 1}, {"level", 0}})),
+              ElementsAre("one_bdf2_h0_tau1", "other_bdf1_h0_tau1", "one_bdf4_h0_tau1"))
+      << "and what is then the same is one run";
+}
+
 TEST(Choices, QuadratureIsThatOfTheDegreeUnlessGiven) {
   GridRequest request;
   EXPECT_EQ(choices(sample(), request)[0].quadrature().name, default_quadrature(2).name);
