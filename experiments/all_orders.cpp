@@ -38,7 +38,7 @@
 #include <algorithm>
 
 #include "experiments/harness/all_orders_problems.hpp"
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/small_steps.hpp"
 
 namespace {
@@ -138,7 +138,7 @@ nlohmann::json parameters() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "all_orders";
   experiment.paper = "esfem";
   experiment.help =

@@ -34,7 +34,7 @@
 #include <cmath>
 #include <deque>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/moving_mesh.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/analysis/errors.hpp"
@@ -228,7 +228,7 @@ double cost(const Choice& choice) {
 
 int main(int argc, char** argv) {
   MovingMeshes meshes;
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "cahn_hilliard_ellipsoid";
   experiment.paper = "bk22";
   experiment.help =

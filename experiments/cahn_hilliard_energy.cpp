@@ -23,7 +23,7 @@
 #include <cmath>
 #include <optional>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "solver/analysis/energy_series.hpp"
 #include "solver/constants.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
@@ -161,7 +161,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "cahn_hilliard_energy";
   experiment.paper = "bk22";
   experiment.help =

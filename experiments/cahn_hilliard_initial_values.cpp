@@ -28,7 +28,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/initial_concentration.hpp"
 #include "solver/analysis/energy_series.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
@@ -227,7 +227,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "cahn_hilliard_initial_values";
   experiment.paper = "bk22";
   experiment.help =

@@ -27,7 +27,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/pfhub_observer.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/generate.hpp"
@@ -168,7 +168,7 @@ bool has_adaptive_order(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "cahn_hilliard_pfhub";
   experiment.paper = "pfhub";
   experiment.help =

@@ -24,7 +24,7 @@
 #include <cmath>
 #include <map>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/growing_sphere_runs.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "experiments/harness/timed.hpp"
@@ -171,7 +171,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "coupled_diffusion";
   experiment.paper = "nick18";
   experiment.help =

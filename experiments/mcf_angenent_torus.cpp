@@ -24,7 +24,7 @@
 // observed.
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/mean_curvature_flows.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/error.hpp"
@@ -139,7 +139,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "mcf_angenent_torus";
   experiment.paper = "esfem";
   experiment.help =

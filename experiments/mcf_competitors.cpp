@@ -24,7 +24,7 @@
 #include <cmath>
 
 #include "experiments/harness/distance.hpp"
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/mean_curvature_flows.hpp"
 #include "experiments/harness/timed.hpp"
 #include "solver/analysis/errors.hpp"
@@ -127,7 +127,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "mcf_competitors";
   experiment.paper = "esfem";
   experiment.help =

@@ -26,7 +26,7 @@
 #include <numeric>
 #include <optional>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/bgn_flow.hpp"
@@ -214,7 +214,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "mcf_dumbbell";
   experiment.paper = "kll19";
   experiment.help =

@@ -22,7 +22,7 @@
 // are 2.3, 2.6, 2.75 from tau = 0.1 down.
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/last_state.hpp"
 #include "experiments/harness/mean_curvature_flows.hpp"
 #include "experiments/harness/timed.hpp"
@@ -154,7 +154,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "mcf_sphere";
   experiment.paper = "kll19";
   experiment.help =

@@ -27,7 +27,7 @@
 // the relaxation it becomes round at the rate of the theory.
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "solver/analysis/series.hpp"
 #include "solver/constants.hpp"
 #include "solver/flows/willmore_flow.hpp"
@@ -142,7 +142,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "surface_diffusion";
   experiment.paper = "kll21";
   experiment.help =

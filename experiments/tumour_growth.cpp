@@ -21,7 +21,7 @@
 
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 
 namespace {
 
@@ -80,7 +80,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "tumour_growth";
   experiment.paper = "esfem";
   experiment.help =

@@ -24,7 +24,7 @@
 // when tau is as small as 0.003 BDF1, too, lets errors grow on unstructured meshes, like exp(10t).
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/stationary_willmore.hpp"
 #include "solver/constants.hpp"
 #include "solver/mesh/generate.hpp"
@@ -116,7 +116,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "willmore_clifford_torus";
   experiment.paper = "kll21";
   experiment.help =

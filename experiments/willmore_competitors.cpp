@@ -25,7 +25,7 @@
 #include <optional>
 
 #include "experiments/harness/distance.hpp"
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/timed.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/analysis/series.hpp"
@@ -167,7 +167,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "willmore_competitors";
   experiment.paper = "kll21";
   experiment.help =

@@ -23,7 +23,7 @@
 // small; the relaxation removes it, and with it a mode of nu_h that grows on the torus whatever tau is.
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "solver/analysis/series.hpp"
 #include "solver/constants.hpp"
 #include "solver/flows/willmore_flow.hpp"
@@ -171,7 +171,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "willmore_relaxation";
   experiment.paper = "kll21";
   experiment.help =

@@ -25,7 +25,7 @@
 // projections errors grow like exp(8t/R⁴).
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/stationary_willmore.hpp"
 #include "solver/analysis/series.hpp"
 #include "solver/constants.hpp"
@@ -135,7 +135,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "willmore_sphere";
   experiment.paper = "kll21";
   experiment.help =

@@ -16,7 +16,7 @@
 // lost: about 0.4 is what remains, whatever q is.
 #include <cmath>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/error.hpp"
 #include "solver/flows/willmore_flow.hpp"
@@ -90,7 +90,7 @@ void run(const Choice& choice, Row& row, const std::string&) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "willmore_time_orders";
   experiment.paper = "kll21";
   experiment.help =

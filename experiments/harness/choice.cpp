@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "solver/error.hpp"
 
@@ -66,6 +67,14 @@ std::vector<int> range(int first, int last) {
   std::vector<int> list;
   for (int i = first; i <= last; ++i) list.push_back(i);
   return list;
+}
+
+double HalvedSteps::tau(int k) const {
+  return largest * std::pow(2.0, -k);
+}
+
+int HalvedSteps::count(int k) const {
+  return static_cast<int>(std::lround(end_time / tau(k)));
 }
 
 const nlohmann::json& Choice::value(const std::string& axis) const {

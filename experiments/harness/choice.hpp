@@ -16,6 +16,15 @@ namespace esfem {
 /// first, first + 1, .., last; empty when last < first.
 std::vector<int> range(int first, int last);
 
+/// The step sizes tau = largest 2^-k on [0, end_time].
+struct HalvedSteps {
+  double end_time, largest;
+
+  double tau(int k) const;
+  /// The number of steps nearest to end_time / tau.
+  int count(int k) const;
+};
+
 /// Values of an axis: names or numbers.
 class Values {
  public:

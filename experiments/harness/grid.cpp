@@ -11,23 +11,8 @@
 
 namespace esfem {
 
-double HalvedSteps::tau(int k) const {
-  return largest * std::pow(2.0, -k);
-}
-
-int HalvedSteps::count(int k) const {
-  return static_cast<int>(std::lround(end_time / tau(k)));
-}
-
 double edge_length(double largest, int level) {
   return largest * std::pow(2.0, -0.5 * level);
-}
-
-std::vector<int> mesh_levels(const Options& options, const std::vector<int>& otherwise) {
-  const int files = static_cast<int>(options.meshes.size());
-  const std::vector<int> levels = options.levels.value_or(files ? range(0, files - 1) : otherwise);
-  if (files) require_levels(levels, files, "--mesh files");
-  return levels;
 }
 
 void require_levels(const std::vector<int>& levels, int count, const std::string& counted) {

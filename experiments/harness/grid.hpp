@@ -17,22 +17,9 @@
 
 namespace esfem {
 
-/// The step sizes tau = largest 2^-k on [0, end_time].
-struct HalvedSteps {
-  double end_time, largest;
-
-  double tau(int k) const;
-  /// The number of steps nearest to end_time / tau.
-  int count(int k) const;
-};
-
 /// The edge length of a level, largest 2^(-level/2): each level has twice as many triangles as the one
 /// before.
 double edge_length(double largest, int level);
-
-/// The mesh levels of a run: those of --levels, else one for each --mesh file, else `otherwise`. Throws
-/// InputError when there are mesh files and a level has none.
-std::vector<int> mesh_levels(const Options& options, const std::vector<int>& otherwise);
 
 /// Throws InputError that names --levels unless every level is less than count, the number of what `counted`
 /// says ("--mesh files").

@@ -4,11 +4,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <regex>
-#include <set>
+#include <map>
+#include <optional>
 
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "experiments/harness/peak_memory.hpp"
 #include "experiments/harness/progress.hpp"
 #include "experiments/harness/provenance.hpp"
@@ -21,15 +22,28 @@ namespace {
 
 /// What the command line asks for.
 struct Request {
-  Options options;
+  std::string preset = "paper", rule;
+  std::optional<int> degree, bdf;
+  std::optional<std::vector<int>> levels, steps;
+  std::optional<Start> start;
+  std::vector<std::string> meshes;
+  std::map<std::string, std::vector<std::string>> names;  ///< on the experiment's own axes
+  std::map<std::string, std::vector<double>> numbers;     ///< the same
   bool list = false;
   std::string cell, collect_from, output = "-";
   int threads = 1;
 };
 
+/// One independent run.
+struct Cell {
+  Choice choice;
+  Row planned;  ///< what is known beforehand (cell, level, tau, steps, labels)
+  double cost;  ///< estimated seconds on one core
+};
+
 void add_run_options(CommandLine& line, Request& request) {
   line.group("Run");
-  line.one_of("--preset", {"check", "paper"}, request.options.preset,
+  line.one_of("--preset", {"check", "paper"}, request.preset,
               "paper: as published; check: the smallest part that shows the orders");
   line.flag("--list", request.list,
             "print the cells, one a line: name and estimated seconds on one core, most expensive first");
@@ -49,35 +63,76 @@ void add_run_options(CommandLine& line, Request& request) {
   line.integer("--threads", 1, 1024, request.threads, "threads that the factorisations may use");
 }
 
-void add_method_options(CommandLine& line, Options& options) {
+void add_grid_options(CommandLine& line, const Grid& grid, Request& request) {
   line.group("Method (none of these: the runs of the preset; else all combinations of the values given)");
-  line.integer("--degree", 1, 4, options.degree, "polynomial degree of the finite elements");
-  line.integer("--bdf", 1, 5, options.bdf, "order of the backward difference formula");
+  line.integer("--degree", 1, 4, request.degree, "polynomial degree of the finite elements");
+  line.integer("--bdf", 1, 5, request.bdf, "order of the backward difference formula");
   line.parsed(
-      "--levels", [&](const std::string& text) { options.levels = parse_list(text, "--levels"); },
+      "--levels", [&](const std::string& text) { request.levels = parse_list(text, "--levels"); },
       "mesh levels, such as 0,1,2 or 0-4", "LIST");
   line.parsed(
-      "--steps", [&](const std::string& text) { options.steps = parse_list(text, "--steps"); },
+      "--steps", [&](const std::string& text) { request.steps = parse_list(text, "--steps"); },
       "exponents k of the step sizes tau_0 2^-k, such as 0,1 or 0-7", "LIST");
   line.parsed(
-      "--start", [&](const std::string& text) { options.start = parse_start(text); },
+      "--start", [&](const std::string& text) { request.start = parse_start(text); },
       "starting values: exact | cascade (lower orders, same step size) | substeps:K (step size tau/K)",
       "START");
-  line.files("--mesh", options.meshes,
+  line.files("--mesh", request.meshes,
              "mesh file (Gmsh, OFF, OBJ, PLY, STL) instead of generated meshes; repeatable");
+  for (const Axis& axis : grid.axes) {
+    if (axis.known.empty())
+      line.positive("--" + axis.name, request.numbers[axis.name], axis.help);
+    else
+      line.names("--" + axis.name, axis.known, request.names[axis.name], axis.help);
+  }
+  line.text("--quadrature", request.rule,
+            "rule on each element: conical:N (N x N Gauss points) | degree:D (symmetric)", "RULE");
 }
 
-std::vector<Cell> checked_cells(const Experiment& experiment, const Options& options) {
-  static const std::regex file_name("[A-Za-z0-9_.+-]+");
-  std::vector<Cell> cells = experiment.cells(options);
+GridRequest grid_request(const Request& request) {
+  GridRequest asked;
+  asked.paper = request.preset == "paper";
+  asked.meshes = request.meshes;
+  asked.rule = request.rule;
+  const auto give = [&](const std::string& axis, const Values& values) {
+    asked.given.insert_or_assign(axis, values);
+  };
+  if (request.degree) give("degree", *request.degree);
+  if (request.bdf) give("bdf", *request.bdf);
+  if (request.levels) give("level", *request.levels);
+  if (request.steps) give("step", *request.steps);
+  if (request.start) give("start", to_string(*request.start).c_str());
+  for (const auto& [axis, values] : request.names)
+    if (!values.empty()) give(axis, values);
+  for (const auto& [axis, values] : request.numbers)
+    if (!values.empty()) give(axis, values);
+  return asked;
+}
+
+Cell cell_of(const Experiment& experiment, const Choice& choice) {
+  const int level = choice.has("level") ? choice.level() : 0, k = choice.has("step") ? choice.step() : 0;
+  Row row = planned_row(level, experiment.steps(choice), k, labels(experiment.grid, choice));
+  row.cell = cell_name(experiment.grid, choice);
+  return {choice, row, experiment.cost(choice)};
+}
+
+std::vector<Cell> cells_of(const Experiment& experiment, const GridRequest& asked) {
+  std::vector<Cell> cells;
+  for (const Choice& choice : choices(experiment.grid, asked)) cells.push_back(cell_of(experiment, choice));
   if (cells.empty())
-    throw InputError("the grid has no such cell; expected --levels and --steps that select some");
-  std::set<std::string> seen;
-  for (const Cell& cell : cells)
-    if (!std::regex_match(cell.name, file_name) || !seen.insert(cell.name).second)
-      throw std::logic_error("cell name '" + cell.name +
-                             "' is not unique or not of letters, digits and _.+-");
+    throw InputError("no cell is left of the grid; expected --levels and --steps that select some");
   return cells;
+}
+
+/// What the table's "parameters" say.
+nlohmann::json parameters_of(const Experiment& experiment, const GridRequest& asked) {
+  nlohmann::json parameters = {{"preset", asked.paper ? "paper" : "check"},
+                               {"quadrature", asked.rule.empty() ? "that of the degree" : asked.rule}};
+  parameters.update(common_values(experiment.grid, choices(experiment.grid, asked)));
+  if (!experiment.meshes.empty() || !asked.meshes.empty())
+    parameters["meshes"] = mesh_parameter(asked.meshes, experiment.meshes);
+  parameters.update(experiment.parameters);
+  return parameters;
 }
 
 std::vector<Cell> most_expensive_first(std::vector<Cell> cells) {
@@ -87,10 +142,10 @@ std::vector<Cell> most_expensive_first(std::vector<Cell> cells) {
 
 const Cell& find_cell(const std::vector<Cell>& cells, const Request& request) {
   for (const Cell& cell : cells)
-    if (cell.name == request.cell) return cell;
+    if (cell.planned.cell == request.cell) return cell;
   throw InputError("--cell: found '" + request.cell + "', expected one of the " +
-                   std::to_string(cells.size()) + " cells of preset " + request.options.preset +
-                   " that --list prints, such as " + cells.front().name);
+                   std::to_string(cells.size()) + " cells of preset " + request.preset +
+                   " that --list prints, such as " + cells.front().planned.cell);
 }
 
 /// The name of an output FILE.json without its extension; "" for others.
@@ -104,7 +159,7 @@ std::string without_extension(const std::string& output) {
 /// Where a cell of a table keeps other files: beside it; "" when there is no such place.
 std::string cell_folder(const std::string& output, const std::string& stem, const Cell& cell) {
   if (without_extension(output).empty()) return "";
-  return (std::filesystem::path(output).parent_path() / "cells" / stem / cell.name).string();
+  return (std::filesystem::path(output).parent_path() / "cells" / stem / cell.planned.cell).string();
 }
 
 /// The row is written: the checkpoint is no longer needed.
@@ -113,31 +168,37 @@ void remove_checkpoint(const std::string& folder) {
   if (!folder.empty()) std::filesystem::remove(checkpoint_file(folder), ignored);
 }
 
-Row run_cell(const Cell& cell, const std::string& folder) {
+/// The row of a run; of one that fails, what is known beforehand, and of its mesh.
+Row run_cell(const Experiment& experiment, const Cell& cell, const std::string& folder) {
   const Progress clock(1, cell.cost);
   reset_peak_memory();
   Row row = cell.planned;
   try {
-    row = cell.run(cell.planned, folder);
+    experiment.run(cell.choice, row, folder);
   } catch (const NumericsError& error) {
+    const double h = row.h;
+    const int nodes = row.nodes;
+    row = cell.planned;
+    row.h = h;
+    row.nodes = nodes;
     row.status = std::string("failed: ") + error.what();
   }
-  row.cell = cell.name;
   row.seconds += clock.elapsed_seconds();
   row.peak_memory_mb = peak_memory_mb();
   if (row.status != "ok")
-    std::cerr << program_invocation_short_name << ": cell " << cell.name << ": " << row.status << std::endl;
+    std::cerr << program_invocation_short_name << ": cell " << row.cell << ": " << row.status << std::endl;
   return row;
 }
 
-std::vector<Row> run_all(const std::vector<Cell>& cells, const std::string& output, const std::string& stem) {
+std::vector<Row> run_all(const Experiment& experiment, const std::vector<Cell>& cells,
+                         const std::string& output) {
   double total_cost = 0;
   for (const Cell& cell : cells) total_cost += cell.cost;
   Progress progress(cells.size(), total_cost);
   std::vector<Row> rows;
   for (const Cell& cell : cells) {
-    progress.cell_starts(cell.name);
-    rows.push_back(run_cell(cell, cell_folder(output, stem, cell)));
+    progress.cell_starts(cell.planned.cell);
+    rows.push_back(run_cell(experiment, cell, cell_folder(output, experiment.stem, cell)));
     progress.cell_ends(cell.cost);
   }
   return rows;
@@ -146,7 +207,7 @@ std::vector<Row> run_all(const std::vector<Cell>& cells, const std::string& outp
 void require_all_files(const std::vector<Cell>& cells, const std::string& folder) {
   std::vector<std::string> missing;
   for (const Cell& cell : cells)
-    if (!std::ifstream(folder + "/" + cell.name + ".json")) missing.push_back(cell.name);
+    if (!std::ifstream(folder + "/" + cell.planned.cell + ".json")) missing.push_back(cell.planned.cell);
   if (!missing.empty())
     throw InputError(folder + "/" + missing.front() + ".json is missing: cell " + missing.front() +
                      " has not been run (nor have " + std::to_string(missing.size() - 1) + " others of " +
@@ -158,10 +219,11 @@ void collect(const std::vector<Cell>& cells, const std::string& folder, Table& t
   require_all_files(cells, folder);
   std::vector<nlohmann::json> origins;
   for (const Cell& cell : cells) {
-    const std::string file = folder + "/" + cell.name + ".json";
+    const std::string file = folder + "/" + cell.planned.cell + ".json";
     const Table found = table_from_json(read_json(file), file);
-    if (found.experiment != table.experiment || found.rows.size() != 1 || found.rows[0].cell != cell.name)
-      throw InputError(file + ": expected a table with one row, of cell " + cell.name + " of " +
+    if (found.experiment != table.experiment || found.rows.size() != 1 ||
+        found.rows[0].cell != cell.planned.cell)
+      throw InputError(file + ": expected a table with one row, of cell " + cell.planned.cell + " of " +
                        table.experiment);
     if (found.parameters != table.parameters)
       throw InputError(file + ": found parameters " + found.parameters.dump() + ", expected " +
@@ -196,27 +258,29 @@ void prepare_table(const std::string& output) {
 void write_list(const std::vector<Cell>& cells, const std::string& output) {
   std::string text;
   for (const Cell& cell : most_expensive_first(cells))
-    text += format("%s %.2f\n", cell.name.c_str(), cell.cost);
+    text += format("%s %.2f\n", cell.planned.cell.c_str(), cell.cost);
   write_file(output, text);
 }
 
-void write_cell(const Cell& cell, const std::string& output, Table table) {
+void write_cell(const Experiment& experiment, const Cell& cell, const std::string& output, Table table) {
   const std::string folder = without_extension(output);
-  table.rows = {run_cell(cell, folder)};
+  table.rows = {run_cell(experiment, cell, folder)};
   write_json(table, output);
   remove_checkpoint(folder);
 }
 
 void answer(const Experiment& experiment, const Request& request, Table table) {
-  const std::vector<Cell> cells = checked_cells(experiment, request.options);
+  const GridRequest asked = grid_request(request);
+  const std::vector<Cell> cells = cells_of(experiment, asked);
   const std::string& output = request.output;
   prepare_output(output);
   if (request.list) return write_list(cells, output);
-  if (experiment.parameters) table.parameters = experiment.parameters(request.options);
-  if (!request.cell.empty()) return write_cell(find_cell(cells, request), output, std::move(table));
+  table.parameters = parameters_of(experiment, asked);
+  if (!request.cell.empty())
+    return write_cell(experiment, find_cell(cells, request), output, std::move(table));
   prepare_table(output);
   if (request.collect_from.empty())
-    table.rows = run_all(cells, output, experiment.stem);
+    table.rows = run_all(experiment, cells, output);
   else
     collect(cells, request.collect_from, table);
   table.fits = fit_table(table, experiment.fit_range);
@@ -232,8 +296,7 @@ int run_experiment(const Experiment& experiment, int argc, char** argv) {
     Request request;
     CommandLine line(experiment.help, experiment.stem);
     add_run_options(line, request);
-    add_method_options(line, request.options);
-    experiment.add_options(line);
+    add_grid_options(line, experiment.grid, request);
     if (!line.parse(argc, argv)) return exit_done;
     set_thread_count(request.threads);
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "experiments/harness/command_line.hpp"
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/method_options.hpp"
 #include "solver/error.hpp"
 
 namespace esfem::test_grid {
@@ -51,24 +51,7 @@ TEST(Grid, TwoLevelsHalveTheEdges) {
   EXPECT_DOUBLE_EQ(edge_length(0.5, 4), 0.125);
 }
 
-TEST(Grid, LevelsAreThoseAskedForElseThoseOfTheFilesElseThePresets) {
-  Options options;
-  EXPECT_THAT(mesh_levels(options, {3, 5}), ElementsAre(3, 5));
-  options.meshes = {"a.msh", "b.msh"};
-  EXPECT_THAT(mesh_levels(options, {3, 5}), ElementsAre(0, 1));
-  options.levels = std::vector<int>{1};
-  EXPECT_THAT(mesh_levels(options, {3, 5}), ElementsAre(1));
-  options.meshes.clear();
-  options.levels = std::vector<int>{7};
-  EXPECT_THAT(mesh_levels(options, {3, 5}), ElementsAre(7)) << "generated meshes have any level";
-}
-
 TEST(Grid, LevelsWithoutAMeshAreRefused) {
-  Options options;
-  options.meshes = {"a.msh", "b.msh"};
-  options.levels = std::vector<int>{1, 2};
-  EXPECT_EQ(message<InputError>([&] { mesh_levels(options, {0}); }),
-            "--levels: found 2, expected less than 2, the number of --mesh files");
   EXPECT_EQ(message<InputError>([] {
               require_levels({0, 4}, 3, "levels");
             }),
@@ -197,7 +180,7 @@ void parse(CommandLine& line, const std::vector<const char*>& arguments) {
   line.parse(int(all.size()), all.data());
 }
 
-TEST(MethodOptions, NamesAreAListOfKnownOnes) {
+TEST(CommandLineTest, NamesAreAListOfKnownOnes) {
   const auto names = [](const std::vector<const char*>& arguments) {
     std::vector<std::string> names;
     CommandLine line("help", "program");
@@ -208,22 +191,6 @@ TEST(MethodOptions, NamesAreAListOfKnownOnes) {
   EXPECT_THAT(names({}), IsEmpty());
   EXPECT_THAT(names({"--flow", "c,a"}), ElementsAre("c", "a"));
   EXPECT_THROW(names({"--flow", "a,d"}), InputError);
-}
-
-TEST(MethodOptions, QuadratureIsThatOfTheDegreeUnlessGiven) {
-  const auto rule = [](const std::vector<const char*>& arguments, int degree) {
-    std::string rule;
-    CommandLine line("help", "program");
-    add_quadrature_option(line, rule);
-    parse(line, arguments);
-    return quadrature_or_default(rule, degree).name;
-  };
-  EXPECT_NE(default_quadrature(1).name, default_quadrature(3).name);
-  for (int degree : {1, 3}) {
-    EXPECT_EQ(rule({}, degree), default_quadrature(degree).name);
-    EXPECT_EQ(rule({"--quadrature", "conical:5"}, degree), conical_quadrature(5).name);
-  }
-  EXPECT_THROW(rule({"--quadrature", "soon"}, 2), InputError);
 }
 
 }  // namespace

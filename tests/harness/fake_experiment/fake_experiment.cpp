@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <new>
 
-#include "experiments/harness/grid_experiment.hpp"
+#include "experiments/harness/grid.hpp"
 #include "solver/error.hpp"
 #include "solver/linalg/node_block_lu.hpp"
 #include "solver/thread_count.hpp"
@@ -76,7 +76,7 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
 
 int main(int argc, char** argv) {
   using namespace esfem;
-  GridExperiment experiment;
+  Experiment experiment;
   experiment.stem = "fake_experiment";
   experiment.paper = "none";
   experiment.help = "Errors h^exponent + tau^3 by formula.\nSample run: fake_experiment --list";
