@@ -178,7 +178,7 @@ void flow_step(benchmark::State& state) {
 /// f + F w and g of kll21 (3.5), inputs (H, nu, V, z).
 void willmore_load(const PointData<8>& p, Integrand<8, 4>& load) {
   load = {};
-  const WillmorePoint at = willmore_point(p, false);
+  const WillmorePoint at = willmore_point(p, willmore_law());
   add_f(at, load.value, load.flux);
   add_F(at, p.u + 4, load.value);
   add_g(at, load.value + 4);
@@ -195,7 +195,7 @@ void willmore_step(benchmark::State& state, double edge_length) {
   WillmoreFlow flow(space, {});
   const nlohmann::json without_factors = flow.progress();
   History<WillmoreFlow::State> history(2);
-  WillmoreFlow::State next = willmore_start_on(space, surface, mesh.nodes, {}, false).state;
+  WillmoreFlow::State next = willmore_start_on(space, surface, mesh.nodes, willmore_law(), false).state;
   Field u_w(space.dofs(), 8), loads, u, w;
   u_w << next.u, next.w;
   for (int i = 0; i < 2; ++i) {

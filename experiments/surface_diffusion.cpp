@@ -111,7 +111,7 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
   // 2. The flow, from the exact normal and mean curvature.
   const Setting& setting = settings.at(choice["setting"]);
   WillmoreFlow::Variant variant;
-  variant.law = WillmoreFlow::Variant::surface_diffusion;
+  variant.law = surface_diffusion_law();
   variant.project = setting.project;
   variant.relaxation = setting.relaxation;
   const WillmoreStart start = willmore_start_on(space, surface, mesh.nodes, variant.law, false);

@@ -138,8 +138,7 @@ void run(const Choice& choice, Row& row, const std::string&) {
     run_flow(std::move(flow), state, surface, recorder, errors, row);
   };
   if (choice["flow"] == "willmore") {
-    const WillmoreStart start =
-        willmore_start_on(space, surface, mesh.nodes, WillmoreFlow::Variant::willmore, false);
+    const WillmoreStart start = willmore_start_on(space, surface, mesh.nodes, willmore_law(), false);
     go(WillmoreFlow(space, {}, start.theta), start.state);
   } else if (choice["flow"] == "dziuk_willmore") {
     go(DziukWillmoreFlow(space), dziuk_willmore_state_on(space, mesh.nodes));

@@ -110,7 +110,7 @@ void run(const Choice& choice, Row& row, const std::string&) {
   // 2. The flow from exact values, with the errors of each step.
   StationaryWillmore setting;
   setting.variant.project = choice["projection"] == "projected";
-  if (choice["flow"] == "surface_diffusion") setting.variant.law = WillmoreFlow::Variant::surface_diffusion;
+  if (choice["flow"] == "surface_diffusion") setting.variant.law = surface_diffusion_law();
   setting.theta = choice["theta"] == "yes";
   setting.grid = {choice.bdf(), row.tau, row.steps, choice.start()};
   const bool with_normals = choice["run"] == "normals" || choice["run"] == "growth";

@@ -42,7 +42,7 @@ HalvedSteps steps(const Choice& choice) {
 /// The state at t = 0.1, from the exact normal and mean curvature at t = 0.
 State behind_the_layer(const SurfaceSpace& space, const Surface& surface, const Field& x,
                        WillmoreFlow& flow) {
-  const WillmoreStart start = willmore_start_on(space, surface, x, WillmoreFlow::Variant::willmore, false);
+  const WillmoreStart start = willmore_start_on(space, surface, x, willmore_law(), false);
   State state;
   integrate(flow, {2, 2e-4, 500, parse_start("substeps:16")}, start.state,
             [&](int, const State& now) { state = now; });

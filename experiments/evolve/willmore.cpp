@@ -9,7 +9,7 @@ namespace {
 
 using Variant = WillmoreFlow::Variant;
 
-Variant willmore_variant(const Settings& asked, Variant::Law law) {
+Variant willmore_variant(const Settings& asked, const WillmoreLaw& law) {
   Variant variant;
   variant.law = law;
   variant.F = asked.is("F", "extrapolated") ? Variant::extrapolated : Variant::implicit;
@@ -30,7 +30,7 @@ void check_theta(const EvolveConfig& config, const std::string& source) {
         source + ": variant: theta needs exact initial data; expected a \"surface\", or \"theta\": false");
 }
 
-WillmoreStart willmore_start(const Run& run, Variant::Law law) {
+WillmoreStart willmore_start(const Run& run, const WillmoreLaw& law) {
   const EvolveConfig& config = run.config;
   const Field& x0 = config.mesh.nodes;
   const Field nu_H = start_values(config, {"nu", "H"}), all = start_values(config, {"nu", "H", "V", "z"});
@@ -44,7 +44,7 @@ WillmoreStart willmore_start(const Run& run, Variant::Law law) {
                         : discrete_willmore_start(run.space, x0, law);
 }
 
-Entry willmore_entry(Variant::Law law) {
+Entry willmore_entry(const WillmoreLaw& law) {
   Entry entry;
   entry.fields = "nu, H, V, z";
   entry.variant = {
@@ -76,8 +76,8 @@ Entry willmore_entry(Variant::Law law) {
 }  // namespace
 
 std::vector<Entry> willmore_entries() {
-  Entry willmore = willmore_entry(Variant::willmore),
-        surface_diffusion = willmore_entry(Variant::surface_diffusion);
+  Entry willmore = willmore_entry(willmore_law()),
+        surface_diffusion = willmore_entry(surface_diffusion_law());
   willmore.flow = "willmore";
   willmore.help = "kll21 (3.4)-(3.5): V = Delta H + Q, which decreases 1/2 int H²";
   surface_diffusion.flow = "surface_diffusion";

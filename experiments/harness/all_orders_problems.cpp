@@ -151,8 +151,7 @@ struct WillmoreOnTorus {
   /// h: the edges at the outer equator.
   WillmoreOnTorus(int degree, double h, double)
       : on(torus(major, minor), isothermal_torus_grid(major, minor, cells(h), cells(h)), degree),
-        start(willmore_start_on(on.space, exact.surface(0), on.mesh.nodes, WillmoreFlow::Variant::willmore,
-                                true)) {}
+        start(willmore_start_on(on.space, exact.surface(0), on.mesh.nodes, willmore_law(), true)) {}
   Flow flow() const { return {on.space, without_projections(), start.theta}; }
   Flow::State state(double t) const {
     Flow::State state = start.state;
@@ -177,7 +176,7 @@ struct WillmoreOnEllipsoid {
 
   WillmoreOnEllipsoid(int degree, double h, double)
       : on(surface, generate_mesh(surface, h), degree),
-        start(willmore_start_on(on.space, surface, on.mesh.nodes, WillmoreFlow::Variant::willmore, false)) {
+        start(willmore_start_on(on.space, surface, on.mesh.nodes, willmore_law(), false)) {
     exact.quantities = {{"x", 3}, {"nu", 3}, {"H", 1}, {"w", 4}};
   }
   Flow flow() const { return {on.space, without_projections()}; }

@@ -11,16 +11,15 @@ namespace esfem {
 
 namespace {
 
-using Law = WillmoreFlow::Variant::Law;
-
 /// The right-hand sides of (3.5): f(x, u) (+ F(x, u) w) in columns 0-3, g(x, u) in columns 4-7; inputs u, w.
 struct WillmoreLoads {
-  bool surface_diffusion, with_F;
+  const WillmoreLaw& law;
+  bool with_F;
   double relaxation;
 
   void operator()(const PointData<8>& p, Integrand<8, 4>& load) const {
     load = {};
-    const WillmorePoint at = willmore_point(p, surface_diffusion);
+    const WillmorePoint at = willmore_point(p, law);
     add_f(at, load.value, load.flux);
     add_g(at, load.value + 4);
     if (with_F) add_F(at, p.u + 4, load.value);
@@ -44,10 +43,10 @@ void project(Field& u, Field& w) {
 
 /// A u - g(x, u), the left-hand side of (3.5b) without M w.
 Field constraint(const SurfaceSpace& space, const SymmetricMatrix& A, const Field& x, const Field& u,
-                 Law law) {
-  const auto g = [law](const PointData<4>& p, Integrand<4, 0>& load) {
+                 const WillmoreLaw& law) {
+  const auto g = [&law](const PointData<4>& p, Integrand<4, 0>& load) {
     for (Pack& value : load.value) value = Pack{};
-    add_g(willmore_point(p, law == Law::surface_diffusion), load.value);
+    add_g(willmore_point(p, law), load.value);
   };
   Field load;
   space.assemble_load<4, 4, 0>(x, u, g, load);
@@ -70,7 +69,7 @@ struct WillmoreFlow::ImplicitCoupling {
   void apply_F(const SurfaceSpace& space, const Field& x, Eigen::Map<const Field> w_now) {
     const auto F = [](const PointData<8>& p, Integrand<4, 0>& load) {
       for (Pack& value : load.value) value = Pack{};
-      add_F(willmore_point(p, true), p.u + 4, load.value);
+      add_F(willmore_point(p), p.u + 4, load.value);
     };
     input.rightCols(4) = w_now;
     input.col(4) /= space.length();
@@ -130,8 +129,7 @@ void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
 
   // f(x~, u~) (+ F(x~, u~) w~) and g(x~, u~)
   assemble_regular(space_, x_tilde_, M_, A_);
-  const WillmoreLoads loads{variant_.law == Variant::surface_diffusion, variant_.F == Variant::extrapolated,
-                            variant_.relaxation};
+  const WillmoreLoads loads{variant_.law, variant_.F == Variant::extrapolated, variant_.relaxation};
   space_.assemble_load<8, 8, 4>(x_tilde_, u_w_tilde_, loads, loads_);
 
   // (3.5a): delta_0/tau M u - A w = F w + f - M 1/tau sum_{j>=1} delta_j u^{n-j};  (3.7): A u + M w = g +
@@ -159,7 +157,8 @@ void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
 namespace {
 
 /// The state with given nodes and u = (H, nu) and, where it is given, w; otherwise w from (3.5b).
-WillmoreStart start_from(const SurfaceSpace& space, const Field& x, Field u, Field exact_w, Law law) {
+WillmoreStart start_from(const SurfaceSpace& space, const Field& x, Field u, Field exact_w,
+                         const WillmoreLaw& law) {
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
   const Field rest = constraint(space, A, x, u, law);
@@ -184,8 +183,8 @@ void WillmoreFlow::Fields::complete(State& state) const {
   state.t = t;
 }
 
-WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x, Law law,
-                                bool with_theta) {
+WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x,
+                                const WillmoreLaw& law, bool with_theta) {
   Field u(x.rows(), 4), w;
   if (with_theta) w.resize(x.rows(), 4);
   for (int j = 0; j < x.rows(); ++j) {
@@ -194,19 +193,20 @@ WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surfac
     const double H = shape.weingarten.trace(), A_squared = shape.weingarten.squaredNorm();
     u.row(j) << H, shape.normal.transpose();
     if (!with_theta) continue;
-    const double Q = law == Law::willmore ? H * (A_squared - H * H / 2) : 0;
+    const double Q = Q_of(law, H, A_squared);
     w.row(j) << surface.mean_curvature_laplacian(y) + Q, surface.mean_curvature_gradient(y).transpose();
   }
   return start_from(space, x, std::move(u), std::move(w), law);
 }
 
-WillmoreStart willmore_start_from(const SurfaceSpace& space, const Field& x, Field u, Field w, Law law) {
+WillmoreStart willmore_start_from(const SurfaceSpace& space, const Field& x, Field u, Field w,
+                                  const WillmoreLaw& law) {
   WillmoreStart start = start_from(space, x, std::move(u), std::move(w), law);
   start.theta = {};
   return start;
 }
 
-WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, Law law) {
+WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, const WillmoreLaw& law) {
   const MeanCurvatureFlow::State curvature = discrete_mean_curvature_state(space, x);
   Field u(x.rows(), 4);
   u << curvature.u.col(3), curvature.u.leftCols(3);

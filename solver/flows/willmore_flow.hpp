@@ -5,6 +5,7 @@
 
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/lagged_block_solver.hpp"
+#include "solver/flows/willmore_law.hpp"
 #include "solver/geometry/regularity.hpp"
 #include "solver/geometry/reinitialisation.hpp"
 #include "solver/nodal_field.hpp"
@@ -21,9 +22,7 @@ namespace esfem {
 class WillmoreFlow {
  public:
   struct Variant {
-    /// willmore: Q = -H³/2 + |A|² H of (2.2), the flow that decreases 1/2 int H²; surface_diffusion: Q = 0
-    /// (1.2).
-    enum Law { willmore, surface_diffusion } law = willmore;
+    WillmoreLaw law = willmore_law();
     /// How F(x, u) w of (3.5a) is taken: extrapolated, F(x~, u~) w~; implicit, F(x~, u~) w^n, which on the
     /// Clifford torus is unstable for step sizes from 0.02 to 0.1.
     enum Coupling { extrapolated, implicit } F = extrapolated;
@@ -77,7 +76,7 @@ class WillmoreFlow {
   /// How Reinitialisation sees u; w comes from (3.5b).
   struct Fields {
     const SurfaceSpace& space;
-    Variant::Law law;
+    WillmoreLaw law;
     static auto nu(State& state) { return state.u.rightCols(3); }
     static auto H(State& state) { return state.u.col(0); }
     void complete(State& state) const;
@@ -103,17 +102,16 @@ struct WillmoreStart {
 /// Starting values of a surface that its nodes x lie on: H, nu and, with_theta, V and z of the surface
 /// (derivatives by autodiff) with the theta (3.6) that belongs to them; otherwise V and z from (3.5b).
 WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x,
-                                WillmoreFlow::Variant::Law law, bool with_theta);
+                                const WillmoreLaw& law, bool with_theta);
 
 /// Starting values with given nodes x, u = (H, nu) and w = (V, z); without w (no rows) it is that of (3.5b).
 /// theta is empty.
 WillmoreStart willmore_start_from(const SurfaceSpace& space, const Field& x, Field u, Field w,
-                                  WillmoreFlow::Variant::Law law);
+                                  const WillmoreLaw& law);
 
 /// Starting values of a surface of which only the nodes x are known: nu and H as those of mean curvature flow
 /// (discrete_mean_curvature_state), V and z from (3.5b).
-WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x,
-                                      WillmoreFlow::Variant::Law law);
+WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, const WillmoreLaw& law);
 
 /// The flow's own nodal fields beside x: v, nu, H, V, z.
 NodalFields nodal_fields(const WillmoreFlow::State& state);

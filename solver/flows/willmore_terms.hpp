@@ -2,6 +2,7 @@
 #pragma once
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/willmore_law.hpp"
 
 namespace esfem {
 
@@ -11,11 +12,12 @@ struct WillmorePoint {
   Pack A[3][3];      ///< A_h, the symmetric part of grad nu_h
   Pack A_squared;    ///< |A_h|², Frobenius
   Pack A_grad_H[3];  ///< A_h grad H_h
-  Pack Q;            ///< -H³/2 + |A|² H of (2.2); 0 for surface diffusion
+  Pack Q;            ///< of the law
 };
 
+/// Without Q, which is 0: what F needs.
 template <int inputs>
-WillmorePoint willmore_point(const PointData<inputs>& p, bool surface_diffusion) {
+WillmorePoint willmore_point(const PointData<inputs>& p) {
   WillmorePoint at;
   at.H = p.u[0];
   at.A_squared = Pack{};
@@ -28,7 +30,14 @@ WillmorePoint willmore_point(const PointData<inputs>& p, bool surface_diffusion)
     }
   }
   for (int i = 0; i < 3; ++i) at.A_grad_H[i] = dot(at.A[i], at.grad_H);
-  at.Q = surface_diffusion ? Pack{} : at.H * (at.A_squared - 0.5 * at.H * at.H);
+  at.Q = Pack{};
+  return at;
+}
+
+template <int inputs>
+WillmorePoint willmore_point(const PointData<inputs>& p, const WillmoreLaw& law) {
+  WillmorePoint at = willmore_point(p);
+  law(at.H, at.A_squared, at.Q);
   return at;
 }
 

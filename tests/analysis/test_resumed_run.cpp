@@ -34,7 +34,7 @@ WillmoreFlow make_flow(const SurfaceSpace& space, const WillmoreFlow*) {
 }
 WillmoreFlow::State start_of(const SurfaceSpace& space, const Surface& surface, const Field& x,
                              const WillmoreFlow*) {
-  return willmore_start_on(space, surface, x, WillmoreFlow::Variant::willmore, false).state;
+  return willmore_start_on(space, surface, x, willmore_law(), false).state;
 }
 
 /// Its factorisations serve several steps; which, a resumed run must know.

@@ -113,17 +113,17 @@ TEST_P(Surfaces, AreaFallsUnderMeanCurvatureFlow) {
 
 TEST_P(Surfaces, SurfaceDiffusionKeepsTheVolumeAndLosesArea) {
   using Variant = WillmoreFlow::Variant;
-  const auto relative_changes = [&](Variant::Law law) {
+  const auto relative_changes = [&](const WillmoreLaw& law) {
     Variant variant;
     variant.law = law;
     WillmoreFlow flow(space, variant);
     const Field end = last_state(flow, grid(2, 2e-4, 4), discrete_willmore_start(space, x, law).state).x;
     return std::pair(space.volume(end) / space.volume(x) - 1, space.area(end) / space.area(x) - 1);
   };
-  const auto [volume, area] = relative_changes(Variant::surface_diffusion);
+  const auto [volume, area] = relative_changes(surface_diffusion_law());
   EXPECT_LT(area, -1e-4);
   EXPECT_LT(std::abs(volume), -6e-3 * area);
-  EXPECT_GT(std::abs(relative_changes(Variant::willmore).first), -6e-3 * area)
+  EXPECT_GT(std::abs(relative_changes(willmore_law()).first), -6e-3 * area)
       << "Willmore flow does not keep it";
 }
 
@@ -135,7 +135,7 @@ TEST_P(Surfaces, WillmoreEnergyFalls) {
   Field load;
   std::vector<double> of_flow, of_surface;
   WillmoreFlow flow(space, {});
-  integrate(flow, grid(2, 1e-4, 4), discrete_willmore_start(space, x, WillmoreFlow::Variant::willmore).state,
+  integrate(flow, grid(2, 1e-4, 4), discrete_willmore_start(space, x, willmore_law()).state,
             [&](int, const WillmoreFlow::State& state) {
               space.assemble_load<1, 1, 0>(state.x, state.u.col(0), square, load);
               of_flow.push_back(load.sum() / 2);
@@ -200,9 +200,8 @@ TEST_P(Surfaces, RotatedNodesGiveTheRotatedResult) {
                [&](const Field& x) { return discrete_mean_curvature_state(space, x); });
   expect_equal(DziukFlow(space), 2, 2e-3, 2, [&](const Field& x) { return dziuk_state_on(space, x); });
   expect_equal(BgnFlow(space), 1, 2e-3, 2, [&](const Field& x) { return bgn_state_on(space, x); });
-  expect_equal(WillmoreFlow(space, {}), 2, 1e-4, 4, [&](const Field& x) {
-    return discrete_willmore_start(space, x, WillmoreFlow::Variant::willmore).state;
-  });
+  expect_equal(WillmoreFlow(space, {}), 2, 1e-4, 4,
+               [&](const Field& x) { return discrete_willmore_start(space, x, willmore_law()).state; });
 }
 
 TEST_P(Surfaces, RenumberedNodesGiveTheRenumberedResult) {
@@ -230,8 +229,7 @@ TEST_P(Surfaces, RenumberedNodesGiveTheRenumberedResult) {
   });
   expect_equal(2, 1e-4, 4, [](const SurfaceSpace& space, const Field& x, const UniformSteps& times) {
     WillmoreFlow flow(space, {});
-    return last_state(flow, times, discrete_willmore_start(space, x, WillmoreFlow::Variant::willmore).state)
-        .x;
+    return last_state(flow, times, discrete_willmore_start(space, x, willmore_law()).state).x;
   });
   expect_equal(2, 1e-2, 3, [&](const SurfaceSpace& space, const Field& x, const UniformSteps& times) {
     const double epsilon = 0.3 * surface.size;

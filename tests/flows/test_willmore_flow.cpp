@@ -42,7 +42,7 @@ struct WillmoreAssembly : testing::Test {
   Field load(const Term& term) const {
     const auto integrand = [&](const PointData<8>& p, Integrand<4, 4>& out) {
       out = {};
-      term(willmore_point(p, false), p.u + 4, out.value, out.flux);
+      term(willmore_point(p, willmore_law()), p.u + 4, out.value, out.flux);
     };
     Field result;
     space.assemble_load<8, 4, 4>(mesh.nodes, u_w, integrand, result);
@@ -161,7 +161,7 @@ TEST(WillmoreFlow, ImplicitCouplingAndSurfaceDiffusionLeaveTheSphereToo) {
   Variant variant;
   variant.F = Variant::implicit;
   EXPECT_LT(unit.moved(variant, true, 2, 1), 1e-9);
-  variant.law = Variant::surface_diffusion;
+  variant.law = surface_diffusion_law();
   EXPECT_LT(unit.moved(variant, true, 2, 1), 1e-9);
 }
 
@@ -200,7 +200,7 @@ struct WeakIdentity {
   explicit WeakIdentity(double h) : mesh(lagrange_mesh(generate_mesh(surface, h), 2)) {
     project_nodes(mesh, surface);
     space = std::make_unique<SurfaceSpace>(mesh);
-    const WillmoreStart start = willmore_start_on(*space, surface, mesh.nodes, Variant::willmore, true);
+    const WillmoreStart start = willmore_start_on(*space, surface, mesh.nodes, willmore_law(), true);
     u_w.resize(space->dofs(), 8);
     u_w << start.state.u, start.state.w;
   }
@@ -222,7 +222,7 @@ struct WeakIdentity {
     space->assemble(mesh.nodes, M, A);
     const auto right = [&](const PointData<8>& p, Integrand<4, 4>& out) {
       out = {};
-      WillmorePoint at = willmore_point(p, false);
+      WillmorePoint at = willmore_point(p, willmore_law());
       change(at);
       add_f(at, out.value, out.flux);
       add_F(at, p.u + 4, out.value);
@@ -252,7 +252,7 @@ TEST(WillmoreFlow, TheEquationsOfVAndZHoldOnATorusWithoutSymmetry) {
     on.space->assemble(on.mesh.nodes, M, A);
     const auto g = [&](const PointData<8>& p, Integrand<4, 0>& out) {
       for (Pack& value : out.value) value = Pack{};
-      if (with_g) add_g(willmore_point(p, false), out.value);
+      if (with_g) add_g(willmore_point(p, willmore_law()), out.value);
     };
     Field load;
     on.space->assemble_load<8, 4, 0>(on.mesh.nodes, on.u_w, g, load);
@@ -295,7 +295,7 @@ TEST(WillmoreFlow, RelaxationBringsTheCurvatureBackToTheSurface) {
   // H_h - 2/R is conserved on a sphere: without relaxation 0.02 too much of it stays.
   const StationarySphere unit(1, 2);
   const auto final_H = [&](double lambda) {
-    WillmoreStart start = willmore_start_on(unit.space, sphere(1), unit.mesh.nodes, Variant::willmore, false);
+    WillmoreStart start = willmore_start_on(unit.space, sphere(1), unit.mesh.nodes, willmore_law(), false);
     start.state.u.col(0).array() += 0.02;
     Variant variant;
     variant.relaxation = lambda;
@@ -311,7 +311,7 @@ TEST(WillmoreFlow, SurfaceDiffusionKeepsTheVolumeAndShrinksTheArea) {
   Mesh mesh = ellipsoid_mesh({1, 1, 0.6}, 2, 2);
   project_nodes(mesh, surface);
   const SurfaceSpace space(mesh);
-  const auto changes = [&](Variant::Law law) {
+  const auto changes = [&](const WillmoreLaw& law) {
     Variant variant;
     variant.law = law;
     const WillmoreStart start = willmore_start_on(space, surface, mesh.nodes, law, true);
@@ -320,10 +320,10 @@ TEST(WillmoreFlow, SurfaceDiffusionKeepsTheVolumeAndShrinksTheArea) {
     return std::pair(space.volume(end.x) / space.volume(mesh.nodes) - 1,
                      space.area(end.x) / space.area(mesh.nodes) - 1);
   };
-  const auto [volume, area] = changes(Variant::surface_diffusion);
+  const auto [volume, area] = changes(surface_diffusion_law());
   EXPECT_NEAR(volume, 0, 2e-4);
   EXPECT_LT(area, -0.01);
-  EXPECT_GT(std::abs(changes(Variant::willmore).first), 2e-3) << "Willmore flow does not keep it";
+  EXPECT_GT(std::abs(changes(willmore_law()).first), 2e-3) << "Willmore flow does not keep it";
 }
 
 /// The flow without memory: every step factorises.
@@ -344,7 +344,7 @@ TEST(WillmoreFlow, OneFactorisationServesManyStepsWithTheSameResult) {
   project_nodes(mesh, surface);
   const SurfaceSpace space(mesh);
   const UniformSteps grid = {2, 5e-4, 100, parse_start("cascade")};
-  for (const Variant::Law law : {Variant::willmore, Variant::surface_diffusion}) {
+  for (const WillmoreLaw& law : {willmore_law(), surface_diffusion_law()}) {
     Variant variant;
     variant.law = law;
     WillmoreFlow flow(space, variant);

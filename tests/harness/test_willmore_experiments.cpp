@@ -78,7 +78,7 @@ TEST_F(StationarySphere, HasTheErrorOfItsEnergy) {
 
 // H and with it V do not depend on nu_h then.
 TEST_F(StationarySphere, StaysUnderSurfaceDiffusionWhileTheNormalIsOff) {
-  setting.variant.law = WillmoreFlow::Variant::surface_diffusion;
+  setting.variant.law = surface_diffusion_law();
   const Errors errors = run().errors;
   for (const char* quantity : {"x", "H", "v", "V"})
     EXPECT_LT(errors.at(quantity).at("nodal_H1"), 1e-11) << quantity;
