@@ -72,9 +72,16 @@ def without_template_arguments(symbol):
     return symbol
 
 
+def symbols_of(listing):
+    """What a library defines for others, of readelf's listing: "ADDRESS W|T NAME" lines, W for weak ones. (nm lists them so
+    itself, but loads the plugins of every compiler that is installed.)"""
+    entry = r"^ *\d+: ([0-9a-f]+) +\S+ \w+ +(GLOBAL|WEAK) +\w+ +(?!UND)\S+ (.*)$"
+    return "".join(f"{address} {'W' if bind == 'WEAK' else 'T'} {name}\n"
+                   for address, bind, name in re.findall(entry, listing, re.M))
+
+
 def check_symbols(symbols, names):
-    """No function that takes or gives Packs by value, such as those of these names, is a symbol of the library (as nm lists
-    them): programs that are compiled for another CPU expect in memory what it has in a register."""
+    """No function that takes or gives Packs by value, such as those of these names, is a symbol of the library: programs that are compiled for another CPU expect in memory what it has in a register."""
     for kind, symbol in re.findall(r"^[0-9a-f]+ (\w) (.*esfem::.*)$", symbols, re.M):
         plain = without_template_arguments(symbol)
         name = plain.split("(")[0].split("::")[-1]
@@ -88,7 +95,9 @@ def check_calls(prefix):
                           for header in (prefix / "include").rglob("*.hpp")))
     expect("dot" in names, "no header has dot(), which returns a Pack: this check sees nothing any more")
     archive = next(prefix.rglob("libesfem.a"))
-    check_symbols(run("nm", "--demangle", "--defined-only", "--extern-only", archive), names)
+    symbols = symbols_of(run("readelf", "--syms", "--wide", "--demangle", archive))
+    expect("esfem::" in symbols, "libesfem.a defines no symbol of esfem: this check sees nothing any more")
+    check_symbols(symbols, names)
 
 
 def check_flags(folder):

@@ -2,7 +2,7 @@
 """What `make consumer-check` must find fault with."""
 import unittest
 
-from check_consumer import Failure, check_symbols, functions_that_return_packs
+from check_consumer import Failure, check_symbols, functions_that_return_packs, symbols_of
 
 HEADER = """
 /// Pack told_of(int) is no function.
@@ -40,6 +40,15 @@ class Packs(unittest.TestCase):
                              ("W", "esfem::PointData<1> esfem::Space::data<1>(esfem::Batch const&, double __vector(8)*)")):
             with self.subTest(symbol):
                 check_symbols(f"{ADDRESS} {kind} {symbol}\n", {"dot", "evaluate"})
+
+    def test_symbols_are_those_that_others_can_call(self):
+        listing = ("   Num:    Value          Size Type    Bind   Vis      Ndx Name\n"
+                   f"     6: {ADDRESS}   117 FUNC    LOCAL  DEFAULT    9 esfem::own(int)\n"
+                   f"     7: {ADDRESS}   117 FUNC    WEAK   DEFAULT    9 esfem::dot(double, double)\n"
+                   f"     8: {ADDRESS}     0 NOTYPE  GLOBAL DEFAULT  UND esfem::wanted(int)\n"
+                   f"     9: {ADDRESS}    12 FUNC    GLOBAL HIDDEN    20 esfem::scale(double __vector(8), double)\n")
+        self.assertEqual(symbols_of(listing), f"{ADDRESS} W esfem::dot(double, double)\n"
+                                              f"{ADDRESS} T esfem::scale(double __vector(8), double)\n")
 
 
 if __name__ == "__main__":
