@@ -53,7 +53,7 @@ help:
 	@echo "make bench         ms per step and phase at growing sizes, factorisations compared with CHOLMOD and MUMPS"
 	@echo "make bench-peers   a step compared with DOLFINx and PETSc, where they are installed"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
-	@echo "make gallery       small pictures in docs/ and the headline table of README.md, from the published results"
+	@echo "make gallery       pictures in docs/ and two tables of README.md, from the published results"
 	@echo "make clean         remove build/ and results/check/; published results and figures are kept and reused"
 	@echo "make distclean     remove results/, figures/ and report/ as well"
 	@echo
@@ -98,8 +98,9 @@ $(PYTHON) plots/report.py $(3)/verdicts.json $(2) $(3) $(4)
 endef
 report: prepare-report
 	@$(call report_of,paper,figures,report)
-gallery: report
-	@$(PYTHON) plots/gallery.py report/verdicts.json figures README.md docs
+gallery: report evolve
+	@$(BUILD)/bin/evolve --schema >$(BUILD)/evolve.schema.json
+	@$(PYTHON) plots/gallery.py report/verdicts.json $(BUILD)/evolve.schema.json figures README.md docs
 # The page alone: printing it takes longer, and its test prints a small one.
 report-check:
 	@$(call report_of,check,$(BUILD)/figures-check,$(BUILD)/report-check,--expect tables --without-pdf)

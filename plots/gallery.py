@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The results that are kept with the sources: small pictures in docs/ and the headline table of README.md.
+"""What is kept with the sources: small pictures in docs/, and in README.md the headline table and that of evolve's flows.
 
-Usage: python3 plots/gallery.py VERDICTS FIGURES README DOCS
-Copies figures that the README shows, made small, and writes the table between the two headline marks of the README
-anew from VERDICTS (check_orders --output).
+Usage: python3 plots/gallery.py VERDICTS SCHEMA FIGURES README DOCS
+Copies figures that the README shows, made small, and writes two tables of the README anew, each between its marks: the
+headline from VERDICTS (check_orders --output), the flows from SCHEMA (evolve --schema).
 """
+import json
 import os
 import re
 import sys
@@ -18,7 +19,6 @@ PICTURES = ("kll19/fig13_1", "kll19/fig13_3", "kll21/fig7_5", "gallery/willmore_
             "gallery/mcf_angenent_torus", "gallery/mcf_competitors", "gallery/tumour_growth", "pfhub/fig1d")
 WIDTH = 1000  # pixels
 COLUMNS = ("reproduced", "reproduced, but", "corrected", "not reproduced", "claim not met")
-MARKS = ("<!-- headline: written by make gallery -->", "<!-- end of headline -->")
 
 
 def headline(results):
@@ -34,23 +34,39 @@ def headline(results):
     heads = ["statements of", *COLUMNS, "own findings and independent values met", "checks"]
     kept = [i for i in range(len(heads)) if heads[i] != "claim not met" or any(row[i] != "–" for row in rows)]
     lines = [[line[i] for i in kept] for line in [heads, ["---"] * len(heads), *rows]]
+    return markdown(lines)
+
+
+def flows(schema):
+    """The flows of evolve and their problems with a line of help each, as a table in Markdown."""
+    lines = [["flow", "problem", ""], ["---"] * 3]
+    for rule in schema["allOf"]:
+        names = {key: value["const"] for key, value in rule["if"]["properties"].items()}
+        lines.append([f"`{names['flow']}`", f"`{names['problem']}`" if "problem" in names else "", rule["then"]["description"]])
+    return markdown(lines)
+
+
+def markdown(lines):
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def with_headline(readme, table):
+def with_table(readme, name, table):
     """The README's text with the table between its marks. Raises TableError when these are not there, once each."""
-    if any(readme.count(mark) != 1 for mark in MARKS):
-        raise TableError(f"README: expected once each: {' and '.join(MARKS)}")
-    return re.sub(f"{MARKS[0]}.*{MARKS[1]}", lambda _: f"{MARKS[0]}\n{table}\n{MARKS[1]}", readme, flags=re.DOTALL)
+    marks = (f"<!-- {name}: written by make gallery -->", f"<!-- end of {name} -->")
+    if any(readme.count(mark) != 1 for mark in marks):
+        raise TableError(f"README: expected once each: {' and '.join(marks)}")
+    return re.sub(f"{marks[0]}.*{marks[1]}", lambda _: f"{marks[0]}\n{table}\n{marks[1]}", readme, flags=re.DOTALL)
 
 
 def main():
-    if len(sys.argv) != 5:
+    if len(sys.argv) != 6:
         sys.exit(__doc__.strip())
-    verdicts, figures, readme, docs = sys.argv[1:]
+    verdicts, schema, figures, readme, docs = sys.argv[1:]
     try:
         with open(readme, encoding="utf-8") as file:
-            text = with_headline(file.read(), headline(read_results(verdicts, "reference")))
+            text = with_table(file.read(), "headline", headline(read_results(verdicts, "reference")))
+        with open(schema, encoding="utf-8") as file:
+            text = with_table(text, "flows", flows(json.load(file)))
         for name in PICTURES:
             with open(os.path.join(docs, os.path.basename(name) + ".png"), "wb") as file:
                 file.write(small_png(os.path.join(figures, name + ".png"), WIDTH))

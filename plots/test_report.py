@@ -207,18 +207,26 @@ class Report(unittest.TestCase):
         with Image.open(io.BytesIO(small_png(path, 100))) as picture:
             self.assertEqual(picture.width, 100)
 
+    def test_flows_of_the_schema(self):
+        def rule(names, text):
+            return {"if": {"properties": {key: {"const": name} for key, name in names.items()}}, "then": {"description": text}}
+        table = gallery.flows({"allOf": [rule({"flow": "dziuk"}, "of nodes"),
+                                         rule({"flow": "coupled", "problem": "tumour"}, "two kinds")]})
+        self.assertEqual(table.splitlines()[2:], ["| `dziuk` |  | of nodes |", "| `coupled` | `tumour` | two kinds |"])
+
     def test_headline(self):
         self.page(claim("a"), claim("b", finding="not reproduced"), claim("c", "finding", "own", "esfem"))
         table = gallery.headline(self.results)
         self.assertIn("| Mean curvature flow (kll19) | 1 | – | – | 1 | 1 of 1 | 3 |", table)
         self.assertNotIn("claim not met", table)
-        readme = f"before\n{gallery.MARKS[0]}\nold\n{gallery.MARKS[1]}\nafter"
-        new = gallery.with_headline(readme, table)
+        mark = "<!-- headline: written by make gallery -->"
+        readme = f"before\n{mark}\nold\n<!-- end of headline -->\nafter"
+        new = gallery.with_table(readme, "headline", table)
         self.assertTrue(new.startswith("before\n") and new.endswith("\nafter") and "old" not in new)
-        self.assertEqual(gallery.with_headline(new, table), new)
-        for broken in ("no marks", readme + gallery.MARKS[0]):
+        self.assertEqual(gallery.with_table(new, "headline", table), new)
+        for broken in ("no marks", readme + mark):
             with self.assertRaises(TableError):
-                gallery.with_headline(broken, table)
+                gallery.with_table(broken, "headline", table)
 
 
 if __name__ == "__main__":

@@ -8,8 +8,7 @@ namespace esfem {
 std::vector<Entry> bgn_entries() {
   Entry entry;
   entry.flow = "bgn";
-  entry.help =
-      "Barrett, Garcke, Nürnberg 2008 for mean curvature flow: tangential motion keeps the mesh good";
+  entry.help = "mean curvature flow by Barrett, Garcke, Nürnberg 2008: tangential motion keeps the mesh good";
   entry.fields = "H";
   entry.run = [](const Run& run) {
     run_flow(BgnFlow(run.space, limits_of(run)), run, bgn_state_on(run.space, run.config.mesh.nodes));

@@ -22,7 +22,7 @@ void run_dziuk(const Run& run) {
 std::vector<Entry> dziuk_entries() {
   Entry entry;
   entry.flow = "dziuk";
-  entry.help = "Dziuk's scheme, kll19 (3.6), for mean curvature flow; unstable with bdf 4 and 5";
+  entry.help = "mean curvature flow by Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5";
   entry.run = run_dziuk;
   // With a higher order the nodes drift along surfaces that are rough, as meshes of files are, until elements
   // degenerate (DziukFlow).

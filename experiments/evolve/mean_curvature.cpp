@@ -24,10 +24,7 @@ void run_mean_curvature(const Run& run) {
   const std::optional<ExactEvolution> exact = exact_mean_curvature_solution(config);
   std::function<State(double)> exact_state;
   if (exact) exact_state = [&](double t) { return exact_mean_curvature_state(*exact, x0, t); };
-  State initial = config.surface ? mean_curvature_state_on(*config.surface, x0)
-                                 : discrete_mean_curvature_state(run.space, x0);
-  if (const Field nu_H = start_values(config, {"nu", "H"}); nu_H.size() > 0)
-    initial = mean_curvature_state(0, x0, nu_H.leftCols(3), nu_H.col(3));
+  State initial = curvature_at_start(config, run.space);
   MeanCurvatureFlow flow(run.space, mean_curvature_variant(config.variant), limits_of(run));
   flow.reinitialise(initial);
   run_flow(flow, run, initial, exact_state);
@@ -45,7 +42,7 @@ std::string mean_curvature_cure(const EvolveConfig& config) {
 std::vector<Entry> mean_curvature_entries() {
   Entry entry;
   entry.flow = "mean_curvature";
-  entry.help = "kll19 (5.1): evolution equations for nu and H";
+  entry.help = "mean curvature flow by kll19 (5.1): evolution equations for nu and H";
   entry.fields = "nu, H";
   entry.variant = {
       word("velocity", {"ritz", "interpolation"}, "v_h: Ritz projection of -H_h nu_h, or its nodal values"),

@@ -50,7 +50,7 @@ json schema_of(const std::vector<Key>& keys) {
   return object_of(properties);
 }
 
-/// What "variant", "parameters" and "bdf" may be for one entry.
+/// What "variant", "parameters" and "bdf" may be for one entry, described by its help.
 json rule_of(const Entry& entry, bool is_default) {
   json is = {{"properties", {{"flow", {{"const", entry.flow}}}}}, {"required", {"flow"}}};
   json then = {{"variant", schema_of(entry.variant)}, {"parameters", schema_of(entry.parameters)}};
@@ -62,7 +62,7 @@ json rule_of(const Entry& entry, bool is_default) {
     if (!is_default) is["required"].push_back("problem");
   }
   if (!entry.takes_adaptive_steps) then["adaptive"] = false;
-  return {{"if", is}, {"then", {{"properties", then}}}};
+  return {{"if", is}, {"then", described({{"properties", then}}, entry.help)}};
 }
 
 /// The keys that all flows have.
