@@ -25,6 +25,7 @@
 
 #include "experiments/harness/grid.hpp"
 #include "solver/analysis/energy_series.hpp"
+#include "solver/analysis/series.hpp"
 #include "solver/constants.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/mesh/generate.hpp"

@@ -31,6 +31,7 @@
 #include "experiments/harness/grid.hpp"
 #include "experiments/harness/initial_concentration.hpp"
 #include "solver/analysis/energy_series.hpp"
+#include "solver/analysis/series.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/geometry/ritz_map.hpp"
 #include "solver/problems/evolving_ellipsoid.hpp"

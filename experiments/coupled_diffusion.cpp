@@ -10,8 +10,8 @@
 // Writes:       results/paper/coupled_diffusion.{json,csv,tex}, from which plots/coupled_diffusion.py draws
 //               figures/nick18/fig1 .. fig5
 //
-// A sphere of radius r(t) = 1 + sin(pi t)/2 carries u = exp(-t²) x1 x2 x3; f and g are chosen so that these
-// solve
+// A sphere of radius r(t) = 1 + sin(pi t)/2 carries u = exp(-t²) x1 x2 x3; f and g are chosen
+// so that these solve
 //   d•u + u div v - Lap u = f(u),   v - Lap v + H nu = g(u) nu   (2.7)-(2.8)
 // on [0, 1]. The discretisation is (2.19)-(2.21): quadratic elements and BDF3, exact starting values, tau =
 // 0.1 2^-k and h near 0.378 2^(-j/2). Errors are those at t = 1.

@@ -143,15 +143,11 @@ int main(int argc, char** argv) {
   experiment.stem = "mcf_angenent_torus";
   experiment.paper = "esfem";
   experiment.help =
-      "Mean curvature flow of the self-shrinking torus of Angenent on [0, 0.2]: errors of position x, "
-      "velocity v, "
-      "normal nu\nand mean curvature H over step size and mesh width. Step sizes 0.02 2^-k, k = 0, 1, ..; "
-      "level j = "
-      "0, .., 4: grids of\n2n x n cells, n = 12, 18, 24, 36, 48, or unstructured meshes. Lengths and times "
-      "have no "
-      "units: v = -H nu.\n\nExample: mcf_angenent_torus --flow mean_curvature --levels 0-2 --steps 3 "
-      "--output "
-      "table.json";
+      "Mean curvature flow of the self-shrinking torus of Angenent on [0, 0.2]: errors of position x,\n"
+      "velocity v, normal nu and mean curvature H over step size and mesh width. Step sizes 0.02 2^-k,\n"
+      "k = 0, 1, ..; level j = 0, .., 4: grids of 2n x n cells, n = 12, 18, 24, 36, 48, or unstructured\n"
+      "meshes. Lengths and times have no units: v = -H nu.\n\n"
+      "Example: mcf_angenent_torus --flow mean_curvature --levels 0-2 --steps 3 --output table.json";
   experiment.grid.axes = {
       {"run",
        {"convergence", "order"},

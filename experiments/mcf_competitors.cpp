@@ -131,11 +131,10 @@ int main(int argc, char** argv) {
   experiment.stem = "mcf_competitors";
   experiment.paper = "esfem";
   experiment.help =
-      "Mean curvature flow of the sphere of radius 2 on [0, 0.6] and the self-shrinking torus on [0, 0.2] by "
-      "three "
-      "schemes:\nerrors, distance of the nodes from the exact surface, and seconds of the steps. Step sizes "
-      "0.05 "
-      "2^-k and 0.02 2^-k;\nlevel j of the meshes has 2^j times as many triangles as level 0. No units.\n\n"
+      "Mean curvature flow of the sphere of radius 2 on [0, 0.6] and the self-shrinking torus on [0, 0.2]\n"
+      "by three schemes: errors, distance of the nodes from the exact surface, and seconds of the steps.\n"
+      "Step sizes 0.05 2^-k and 0.02 2^-k; level j of the meshes has 2^j times as many triangles as\n"
+      "level 0. No units.\n\n"
       "Example: mcf_competitors --surface sphere --flow mean_curvature,bgn --steps 0-3 --output table.json";
   experiment.grid.axes = {
       {"surface", {"sphere", "angenent_torus"}, "surfaces to start from"},

@@ -23,13 +23,13 @@
 #include <cmath>
 
 #include "experiments/harness/grid.hpp"
-#include "experiments/harness/last_state.hpp"
 #include "experiments/harness/mean_curvature_flows.hpp"
 #include "experiments/harness/timed.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/errors.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/problems/exact_states.hpp"
+#include "solver/time/last_state.hpp"
 
 namespace {
 
@@ -158,18 +158,16 @@ int main(int argc, char** argv) {
   experiment.stem = "mcf_sphere";
   experiment.paper = "kll19";
   experiment.help =
-      "Mean curvature flow of the sphere of radius 2 on [0, 0.6]: errors of position x, velocity v, normal "
-      "nu and mean\n"
-      "curvature H over step size and mesh width (kll19 Figures 13.1, 13.2). Step sizes 0.2 2^-k, k = 0..7; "
-      "edge\n"
-      "lengths 0.5 2^(-j/2), level j = 0..4. Lengths and times have no units: v = -H nu.\n\n"
+      "Mean curvature flow of the sphere of radius 2 on [0, 0.6]: errors of position x, velocity v, normal\n"
+      "nu and mean curvature H over step size and mesh width (kll19 Figures 13.1, 13.2). Step sizes\n"
+      "0.2 2^-k, k = 0..7; edge lengths 0.5 2^(-j/2), level j = 0..4. Lengths and times have no units: v = "
+      "-H nu.\n\n"
       "Example: mcf_sphere --preset check --levels 0 --steps 2-4 --output table.json";
   experiment.grid.axes = {
       {"run",
        {"convergence", "disturbed_normal", "cost"},
        "convergence: errors | disturbed_normal: growth of an error in |nu_h| | cost: run time of (5.1) "
-       "relative "
-       "to Dziuk's scheme"},
+       "relative to Dziuk's scheme"},
       {"flow", {"mean_curvature", "dziuk"}, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6)"}};
   experiment.grid.labels = {"run", "flow", "bdf", "start"};
   experiment.grid.otherwise = otherwise;

@@ -170,11 +170,10 @@ int main(int argc, char** argv) {
   experiment.stem = "willmore_competitors";
   experiment.paper = "kll21";
   experiment.help =
-      "Willmore flow of the unit sphere, the Clifford torus (radii 1, 2^(-1/2)) and an ellipsoid (1, 1, "
-      "0.6)\n"
-      "by three schemes: errors, energies, quality of the mesh and seconds per step. Backward Euler steps\n"
-      "0.001 2^-k, on [0, 0.02], the torus on [0, 0.005]; level j of the meshes has 2^j times as many\n"
-      "triangles as level 0. No units.\n\n"
+      "Willmore flow of the unit sphere, the Clifford torus (radii 1, 2^(-1/2)) and an ellipsoid\n"
+      "(1, 1, 0.6) by three schemes: errors, energies, quality of the mesh and seconds per step. Backward\n"
+      "Euler steps 0.001 2^-k, on [0, 0.02], the torus on [0, 0.005]; level j of the meshes has 2^j times\n"
+      "as many triangles as level 0. No units.\n\n"
       "Example: willmore_competitors --surface sphere --flow willmore,bgn_willmore --steps 0-3";
   experiment.grid.axes = {
       {"surface", names_of(cases), "surfaces to start from"},

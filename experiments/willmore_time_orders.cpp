@@ -94,10 +94,9 @@ int main(int argc, char** argv) {
   experiment.stem = "willmore_time_orders";
   experiment.paper = "kll21";
   experiment.help =
-      "Orders in time of BDF 1 to 4 for Willmore flow of an ellipsoid on [0, 0.4], with and without "
-      "projections of nu_h "
-      "and\n"
-      "z_h, against small steps on the same mesh. Step sizes 0.1 2^-k, k = 1..6. No units.\n\n"
+      "Orders in time of BDF 1 to 4 for Willmore flow of an ellipsoid on [0, 0.4], with and without\n"
+      "projections of nu_h and z_h, against small steps on the same mesh. Step sizes 0.1 2^-k, k = 1..6. No "
+      "units.\n\n"
       "Example: willmore_time_orders --bdf 2 --steps 3-6 --output table.json";
   experiment.grid.axes = {{"projection", {"none", "projected"}, "of nu_h and z_h after each step"}};
   experiment.grid.labels = {"projection", "bdf"};

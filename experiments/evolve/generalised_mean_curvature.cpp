@@ -21,11 +21,8 @@ void run_generalised_mean_curvature(const Run& run) {
     exact = power_law_sphere(config.surface->parameters.at("radius"), law);
     exact_state = [&](double t) { return exact_generalised_mean_curvature_state(exact, x0, t); };
   }
-  MeanCurvatureFlow::State curvature = config.surface ? mean_curvature_state_on(*config.surface, x0)
-                                                      : discrete_mean_curvature_state(run.space, x0);
-  if (const Field nu_H = start_values(config, {"nu", "H"}); nu_H.size() > 0) curvature.u = nu_H;
-  const State initial =
-      generalised_mean_curvature_state(law, x0, curvature.u.leftCols(3), curvature.u.col(3));
+  const Field nu_H = curvature_at_start(config, run.space).u;
+  const State initial = generalised_mean_curvature_state(law, x0, nu_H.leftCols(3), nu_H.col(3));
   const auto velocity = config.variant.is("velocity", "ritz") ? Variant::ritz : Variant::interpolation;
   run_flow(GeneralisedMeanCurvatureFlow(run.space, law, velocity, limits_of(run)), run, initial, exact_state);
 }

@@ -70,7 +70,7 @@ void run_flow(Flow&& flow, const Run& run, const typename std::decay_t<Flow>::St
               const std::function<typename std::decay_t<Flow>::State(double t)>& exact = {}) {
   using State = typename std::decay_t<Flow>::State;
   const auto observe = [&](int n, const State& state) {
-    run.recorder.record(n, state.t, state.x, nodal_fields(state));
+    run.recorder.record(n, state);
     record_more(run, state);
     return look_at_step(run, n, state.t);
   };

@@ -19,15 +19,9 @@ std::vector<Names> possible_starts(const EvolveConfig& config) {
   return config.entry->starts;
 }
 
-const NodalField* field_named(const EvolveConfig& config, const std::string& name) {
-  const auto found = std::find_if(config.fields.begin(), config.fields.end(),
-                                  [&](const NodalField& field) { return field.name == name; });
-  return found == config.fields.end() ? nullptr : &*found;
-}
-
 bool has_all(const EvolveConfig& config, const Names& names) {
   return std::all_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return field_named(config, name); });
+                     [&](const std::string& name) { return find(config.fields, name); });
 }
 
 /// The node under the number that the mesh file has for it.
@@ -36,15 +30,15 @@ std::string node_named(const EvolveConfig& config, int i) {
   return format("node %d (counted from 1)", i + 1);
 }
 
-void check_values(const EvolveConfig& config, const NodalField& field) {
-  const bool is_vector = field.name == "nu" || field.name == "z" || field.name == "v";
-  if (field.values.cols() != (is_vector ? 3 : 1))
-    throw InputError(format("mesh: %s of the file has %d components, %d expected", field.name.c_str(),
-                            int(field.values.cols()), is_vector ? 3 : 1));
-  for (int i = 0; i < field.values.rows(); ++i)
-    if (!field.values.row(i).allFinite())
-      throw InputError("mesh: " + field.name + " of the file has no finite value at " +
-                       node_named(config, i) + ", one at each node expected");
+void check_values(const EvolveConfig& config, const std::string& name, const Field& values) {
+  const bool is_vector = name == "nu" || name == "z" || name == "v";
+  if (values.cols() != (is_vector ? 3 : 1))
+    throw InputError(format("mesh: %s of the file has %d components, %d expected", name.c_str(),
+                            int(values.cols()), is_vector ? 3 : 1));
+  for (int i = 0; i < values.rows(); ++i)
+    if (!values.row(i).allFinite())
+      throw InputError("mesh: " + name + " of the file has no finite value at " + node_named(config, i) +
+                       ", one at each node expected");
 }
 
 /// Normals of the file have about unit length and point outward, as those of the elements do.
@@ -76,14 +70,22 @@ Field start_values(const EvolveConfig& config, const Names& names) {
     return {};
   Field values(config.mesh.nodes.rows(), 0);
   for (const std::string& name : names) {
-    const NodalField& field = *field_named(config, name);
-    check_values(config, field);
-    if (name == "nu") check_normals(config, field.values);
-    Field both(values.rows(), values.cols() + field.values.cols());
-    both << values, field.values;
+    const Field& field = *find(config.fields, name);
+    check_values(config, name, field);
+    if (name == "nu") check_normals(config, field);
+    Field both(values.rows(), values.cols() + field.cols());
+    both << values, field;
     values = std::move(both);
   }
   return values;
+}
+
+MeanCurvatureFlow::State curvature_at_start(const EvolveConfig& config, const SurfaceSpace& space) {
+  const Field& x = config.mesh.nodes;
+  if (const Field nu_H = start_values(config, {"nu", "H"}); nu_H.size() > 0)
+    return mean_curvature_state(0, x, nu_H.leftCols(3), nu_H.col(3));
+  return config.surface ? mean_curvature_state_on(*config.surface, x)
+                        : discrete_mean_curvature_state(space, x);
 }
 
 void require_unit_sphere(const EvolveConfig& config, const std::string& what) {

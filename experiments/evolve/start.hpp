@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/evolve/config.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
 
 namespace esfem {
 
@@ -13,6 +14,10 @@ namespace esfem {
 /// exact surface. Throws InputError for values that are not finite, have other than the flow's number of
 /// components, and normals that do not belong to the surface.
 Field start_values(const EvolveConfig& config, const std::vector<std::string>& names);
+
+/// nu and H that a run of the mean curvature flows starts from: the mesh file's, else those of the exact
+/// surface, else those of the discrete one.
+MeanCurvatureFlow::State curvature_at_start(const EvolveConfig& config, const SurfaceSpace& space);
 
 /// Throws InputError, headed by `what`, unless the surface is the unit sphere.
 void require_unit_sphere(const EvolveConfig& config, const std::string& what);

@@ -4,9 +4,9 @@
 
 #include <array>
 
-#include "experiments/harness/last_state.hpp"
 #include "solver/problems/exact_evolution.hpp"
 #include "solver/problems/growing_sphere.hpp"
+#include "solver/time/last_state.hpp"
 
 namespace esfem {
 

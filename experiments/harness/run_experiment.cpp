@@ -116,19 +116,20 @@ Cell cell_of(const Experiment& experiment, const Choice& choice) {
   return {choice, row, experiment.cost(choice)};
 }
 
-std::vector<Cell> cells_of(const Experiment& experiment, const GridRequest& asked) {
+std::vector<Cell> cells_of(const Experiment& experiment, const std::vector<Choice>& runs) {
   std::vector<Cell> cells;
-  for (const Choice& choice : choices(experiment.grid, asked)) cells.push_back(cell_of(experiment, choice));
+  for (const Choice& choice : runs) cells.push_back(cell_of(experiment, choice));
   if (cells.empty())
     throw InputError("no cell is left of the grid; expected --levels and --steps that select some");
   return cells;
 }
 
 /// What the table's "parameters" say.
-nlohmann::json parameters_of(const Experiment& experiment, const GridRequest& asked) {
+nlohmann::json parameters_of(const Experiment& experiment, const GridRequest& asked,
+                             const std::vector<Choice>& runs) {
   nlohmann::json parameters = {{"preset", asked.paper ? "paper" : "check"},
                                {"quadrature", asked.rule.empty() ? "that of the degree" : asked.rule}};
-  parameters.update(common_values(experiment.grid, choices(experiment.grid, asked)));
+  parameters.update(common_values(experiment.grid, runs));
   if (!experiment.meshes.empty() || !asked.meshes.empty())
     parameters["meshes"] = mesh_parameter(asked.meshes, experiment.meshes);
   parameters.update(experiment.parameters);
@@ -271,11 +272,12 @@ void write_cell(const Experiment& experiment, const Cell& cell, const std::strin
 
 void answer(const Experiment& experiment, const Request& request, Table table) {
   const GridRequest asked = grid_request(request);
-  const std::vector<Cell> cells = cells_of(experiment, asked);
+  const std::vector<Choice> runs = choices(experiment.grid, asked);
+  const std::vector<Cell> cells = cells_of(experiment, runs);
   const std::string& output = request.output;
   prepare_output(output);
   if (request.list) return write_list(cells, output);
-  table.parameters = parameters_of(experiment, asked);
+  table.parameters = parameters_of(experiment, asked, runs);
   if (!request.cell.empty())
     return write_cell(experiment, find_cell(cells, request), output, std::move(table));
   prepare_table(output);

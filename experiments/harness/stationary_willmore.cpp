@@ -15,35 +15,19 @@ namespace esfem {
 
 namespace {
 
-/// v, V and z side by side, N x 7.
-Field velocity_columns(const WillmoreFlow::State& state) {
-  Field columns(state.x.rows(), 7);
-  columns << state.v, state.w;
-  return columns;
-}
-
-/// The nodal norms of e for the columns from first on.
-std::map<std::string, double> norms_of(const SquaredNorms& norms, int first, int count) {
-  const double L2 = norms.L2.segment(first, count).sum();
-  const double H1_semi = std::max(0.0, norms.H1_semi.segment(first, count).sum());
-  return {{"nodal_L2", std::sqrt(L2)},
-          {"nodal_H1", std::sqrt(L2 + H1_semi)},
-          {"nodal_H1_semi", std::sqrt(H1_semi)}};
-}
-
 /// Nodal errors of v, V and z on a surface at rest, whose matrices do not change: maxima over time.
 class VelocityErrors {
  public:
   VelocityErrors(const SurfaceSpace& space, const WillmoreFlow::State& exact)
-      : exact_(velocity_columns(exact)), M_(space.matrix()), A_(space.matrix()) {
+      : quantities_(space, {{"v", 3}, {"V", 1}, {"z", 3}}),
+        exact_(quantities_.of(exact)),
+        M_(space.matrix()),
+        A_(space.matrix()) {
     space.assemble(exact.x, M_, A_);
   }
 
   void record(const WillmoreFlow::State& state) {
-    const SquaredNorms norms = nodal_norms(M_, A_, velocity_columns(state) - exact_);
-    raise("v", norms_of(norms, 0, 3));
-    raise("V", norms_of(norms, 3, 1));
-    raise("z", norms_of(norms, 4, 3));
+    raise_maxima(quantities_, "nodal", nodal_norms(M_, A_, quantities_.of(state) - exact_), maxima_);
   }
   const Errors& maxima() const { return maxima_; }
 
@@ -56,8 +40,8 @@ class VelocityErrors {
     spd.solve(e);
     spd.factorise(1, M_, 1, A_);
     spd.solve(dual);
-    const SquaredNorms norms = nodal_norms(M_, A_, e);
-    Errors errors = {{"V_initial", norms_of(norms, 0, 1)}, {"z_initial", norms_of(norms, 1, 3)}};
+    Errors errors;
+    raise_maxima({space, {{"V_initial", 1}, {"z_initial", 3}}}, "nodal", nodal_norms(M_, A_, e), errors);
     const Eigen::VectorXd squares = theta.cwiseProduct(dual).colwise().sum();
     errors["V_initial"]["nodal_dual"] = std::sqrt(std::max(0.0, squares[0]));
     errors["z_initial"]["nodal_dual"] = std::sqrt(std::max(0.0, squares.tail(3).sum()));
@@ -65,13 +49,7 @@ class VelocityErrors {
   }
 
  private:
-  void raise(const std::string& quantity, const std::map<std::string, double>& norms) {
-    for (const auto& [norm, value] : norms) {
-      double& most = maxima_[quantity][norm];
-      most = std::max(most, value);
-    }
-  }
-
+  Quantities quantities_;
   Field exact_;
   SymmetricMatrix M_, A_;
   Errors maxima_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/analysis/series.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
@@ -30,13 +31,6 @@ Series thinned(const Series& series, std::size_t most) {
     if (!values.empty() && (values.size() - 1) % k != 0) result[name].push_back(values.back());
   }
   return result;
-}
-
-std::size_t nearest(const Series& series, double t) {
-  const std::vector<double>& times = series.at("t");
-  if (times.empty()) throw InputError("the series is empty");
-  const auto closer = [t](double a, double b) { return std::abs(a - t) < std::abs(b - t); };
-  return std::min_element(times.begin(), times.end(), closer) - times.begin();
 }
 
 namespace {

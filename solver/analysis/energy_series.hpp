@@ -23,9 +23,6 @@ void attach(Checkpoint& checkpoint, Series& series);
 /// them.
 Series thinned(const Series& series, std::size_t most);
 
-/// The number of the series' entry whose time is nearest to t. Throws InputError when the series is empty.
-std::size_t nearest(const Series& series, double t);
-
 /// The number of the entry with the largest (smallest) value of `name` for times in [from, to], the first of
 /// equal ones. Throws InputError when there is none.
 std::size_t largest_in(const Series& series, const std::string& name, double from, double to);

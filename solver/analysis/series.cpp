@@ -15,6 +15,13 @@ std::size_t first_at(const Series& series, double t) {
   return std::min<std::size_t>(found - times.begin(), times.size() - 1);
 }
 
+std::size_t nearest(const Series& series, double t) {
+  const std::vector<double>& times = series.at("t");
+  if (times.empty()) throw InputError("the series is empty");
+  const auto closer = [t](double a, double b) { return std::abs(a - t) < std::abs(b - t); };
+  return std::min_element(times.begin(), times.end(), closer) - times.begin();
+}
+
 double value_at(const Series& series, const std::string& name, double t) {
   return series.at(name)[first_at(series, t)];
 }

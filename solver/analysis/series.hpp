@@ -14,7 +14,10 @@ namespace esfem {
 /// when the series is empty.
 std::size_t first_at(const Series& series, double t);
 
-/// The value of `name` there.
+/// The number of the entry whose time is nearest to t. Throws InputError when the series is empty.
+std::size_t nearest(const Series& series, double t);
+
+/// The value of `name` at first_at(t).
 double value_at(const Series& series, const std::string& name, double t);
 
 /// The largest rise from one value to the next; 0 when there is none.

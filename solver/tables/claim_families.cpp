@@ -21,10 +21,6 @@ constexpr std::size_t most_members = 1000;
 /// The names of "for" with their values, of one member.
 using Values = std::map<std::string, Json>;
 
-std::string value_text(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : value.dump();
-}
-
 std::set<std::string> names_of(const Values& values) {
   std::set<std::string> names;
   for (const auto& [name, value] : values) names.insert(name);

@@ -83,7 +83,7 @@ std::string csv_further(const Row& row, const std::string& key) {
   const nlohmann::json& holder = row.labels.contains(key) ? row.labels : row.more;
   const auto value = holder.find(key);
   if (value == holder.end() || !value->is_primitive() || value->is_null()) return "";
-  return csv_text(value->is_string() ? value->get<std::string>() : value->dump());
+  return csv_text(value_text(*value));
 }
 
 // --- LaTeX ---

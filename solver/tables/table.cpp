@@ -179,13 +179,14 @@ bool failed(const Row& row) {
   return row.status.compare(0, 8, "failed: ") == 0;
 }
 
+std::string value_text(const Json& value) {
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
 std::string label_text(const Json& labels) {
   std::string text;
-  for (const auto& item : labels.items()) {
-    const std::string value =
-        item.value().is_string() ? item.value().get<std::string>() : item.value().dump();
-    text += (text.empty() ? "" : ", ") + item.key() + "=" + value;
-  }
+  for (const auto& item : labels.items())
+    text += (text.empty() ? "" : ", ") + item.key() + "=" + value_text(item.value());
   return text;
 }
 

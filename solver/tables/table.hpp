@@ -38,6 +38,9 @@ struct Row {
 /// Whether the run of this row failed: then it may have nothing but its status.
 bool failed(const Row& row);
 
+/// A label's value as readable text: numbers as in JSON, strings without quotation marks.
+std::string value_text(const nlohmann::json& value);
+
 /// Labels as readable text: "bdf=4, flow=dziuk"; "" without any.
 std::string label_text(const nlohmann::json& labels);
 

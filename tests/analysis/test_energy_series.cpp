@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "solver/analysis/energy_series.hpp"
+#include "solver/analysis/series.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/problems/evolving_ellipsoid.hpp"

@@ -6,18 +6,9 @@
 
 #include "solver/mesh/read.hpp"
 #include "solver/tables/table.hpp"
-#include "solver/time/integrate.hpp"
+#include "solver/time/last_state.hpp"
 
 namespace esfem {
-
-/// The state at the end of a run.
-template <class Flow>
-typename Flow::State last_state(Flow& flow, const UniformSteps& grid, const typename Flow::State& initial,
-                                const std::function<typename Flow::State(double t)>& exact_state = nullptr) {
-  typename Flow::State last;
-  integrate(flow, grid, {initial, exact_state}, [&](int, const typename Flow::State& now) { last = now; });
-  return last;
-}
 
 /// A run of the independent implementation, from a file of reference/independent.
 struct ReferenceCase {

@@ -177,7 +177,7 @@ struct CahnHilliardCase {
                                   load_of_g(space, DoubleWell(), 0, start.x, start.u));
     }
     CahnHilliard flow(space, exact.problem(), motion, epsilon, theta);
-    return last_state(flow, {json["q"], tau, json["steps"], {}}, start, starts);
+    return last_state(flow, {json["q"], tau, json["steps"], {}}, {start, starts});
   }
 
   double deviation(const State& state) const {
@@ -256,7 +256,7 @@ double manufactured_error(const Mesh& mesh, const ManufacturedCahnHilliard& exac
   const std::function<State(double)> starts = [&](double t) {
     return exact_cahn_hilliard_state(space, exact, nodes.at(t), t, StartValues::interpolation);
   };
-  const State end = last_state(flow, {q, tau, 40, {}}, starts(0), starts);
+  const State end = last_state(flow, {q, tau, 40, {}}, {starts(0), starts});
   return (end.u - starts(end.t).u).cwiseAbs().maxCoeff();
 }
 
@@ -311,7 +311,7 @@ struct StretchedNodes {
   double error(const Velocity& tangential) {
     CahnHilliard flow(space, exact.problem(), motion, epsilon, {}, tangential);
     const std::function<State(double)> starts = [&](double t) { return exact_state(t); };
-    const State end = last_state(flow, {3, tau, 20, {}}, exact_state(0), starts);
+    const State end = last_state(flow, {3, tau, 20, {}}, {exact_state(0), starts});
     return (end.u - exact_state(0.2).u).cwiseAbs().maxCoeff();
   }
 };

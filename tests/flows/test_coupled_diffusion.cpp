@@ -42,8 +42,7 @@ struct GrowingSphereRun {
     const Parameters parameters;
     CoupledDiffusion<GrowingSphereProblem> flow(
         space, GrowingSphereProblem(parameters, variant.law, coupling), parameters, variant);
-    return last_state(flow, grid, exact_state(0),
-                      std::function<State(double)>([this](double t) { return exact_state(t); }));
+    return last_state(flow, grid, {exact_state(0), [this](double t) { return exact_state(t); }});
   }
 
   /// Errors of a state against the exact solution.

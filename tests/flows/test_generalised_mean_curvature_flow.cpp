@@ -28,7 +28,7 @@ TEST(GeneralisedMeanCurvatureFlow, AgreesWithTheIndependentImplementation) {
     const ExactEvolution exact = power_law_sphere(2, law);
     const auto states = exact_state(exact, reference.mesh.nodes);
     const auto deviation = [&](Flow flow) {
-      return reference.deviation(last_state(flow, reference.grid, states(0), states));
+      return reference.deviation(last_state(flow, reference.grid, {states(0), states}));
     };
     EXPECT_LT(deviation(Flow(space, law)), 1e-8) << name;
     EXPECT_GT(deviation(Flow(space, law, MeanCurvatureFlow::Variant::interpolation)), 5e-8)
@@ -52,12 +52,18 @@ TEST(PowerLaw, InverseAndWeightBelongToV) {
   EXPECT_THROW(PowerLaw(std::nan("")), InputError);
 }
 
-TEST(GeneralisedMeanCurvatureFlow, OfPowerOneIsMeanCurvatureFlow) {
-  const Surface surface = ellipsoid(1.2, 1, 0.8);
-  Mesh mesh = lagrange_mesh(generate_mesh(surface, 0.4), 2);
+const Surface triaxial = ellipsoid(1.2, 1, 0.8);
+
+Mesh quadratic_mesh(const Surface& surface, double edge_length) {
+  Mesh mesh = lagrange_mesh(generate_mesh(surface, edge_length), 2);
   project_nodes(mesh, surface);
+  return mesh;
+}
+
+TEST(GeneralisedMeanCurvatureFlow, OfPowerOneIsMeanCurvatureFlow) {
+  const Mesh mesh = quadratic_mesh(triaxial, 0.4);
   const SurfaceSpace space(mesh);
-  const MeanCurvatureFlow::State start = mean_curvature_state_on(surface, mesh.nodes);
+  const MeanCurvatureFlow::State start = mean_curvature_state_on(triaxial, mesh.nodes);
   const PowerLaw law(1);
   const UniformSteps steps{2, 0.005, 4, parse_start("cascade")};
   Flow flow(space, law);
@@ -100,11 +106,9 @@ TEST(GeneralisedMeanCurvatureFlow, HasTheOrderOfTheBdfOnSpheres) {
 }
 
 TEST(GeneralisedMeanCurvatureFlow, InverseFlowMultipliesTheAreaByTheExponential) {
-  const Surface surface = ellipsoid(1.2, 1, 0.8);
-  Mesh mesh = lagrange_mesh(generate_mesh(surface, 0.25), 2);
-  project_nodes(mesh, surface);
+  const Mesh mesh = quadratic_mesh(triaxial, 0.25);
   const SurfaceSpace space(mesh);
-  const MeanCurvatureFlow::State curvature = mean_curvature_state_on(surface, mesh.nodes);
+  const MeanCurvatureFlow::State curvature = mean_curvature_state_on(triaxial, mesh.nodes);
   const auto excess = [&](double power) {
     const PowerLaw law(power);
     Flow flow(space, law);

@@ -21,7 +21,7 @@ State run_sphere(const Mesh& mesh, const Quadrature& rule, const UniformSteps& g
   };
   const SurfaceSpace space(mesh, rule);
   MeanCurvatureFlow flow(space, variant);
-  return last_state(flow, grid, state(0), state);
+  return last_state(flow, grid, {state(0), state});
 }
 
 State run_dumbbell(const Mesh& mesh, const Quadrature& rule, const UniformSteps& grid) {

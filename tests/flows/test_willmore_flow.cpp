@@ -142,8 +142,8 @@ struct StationarySphere {
     const WillmoreStart start = willmore_start_on(space, sphere(R), mesh.nodes, variant.law, with_theta);
     WillmoreFlow flow(space, variant, start.theta);
     const auto at_rest = [&](double) { return start.state; };
-    const State end = last_state(flow, {q, 0.05, static_cast<int>(std::lround(T / 0.05)), {}}, start.state,
-                                 std::function<State(double)>(at_rest));
+    const State end =
+        last_state(flow, {q, 0.05, static_cast<int>(std::lround(T / 0.05)), {}}, {start.state, at_rest});
     return std::max((end.x - start.state.x).cwiseAbs().maxCoeff(),
                     (end.u - start.state.u).cwiseAbs().maxCoeff());
   }

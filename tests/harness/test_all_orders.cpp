@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "experiments/harness/all_orders_problems.hpp"
-#include "experiments/harness/last_state.hpp"
 #include "experiments/harness/small_steps.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/tables/claims.hpp"
+#include "solver/time/last_state.hpp"
 #include "tests/time/linear_ode.hpp"
 
 namespace esfem::test_all_orders {
