@@ -22,6 +22,11 @@ constexpr int most_iterations = factorisation_cost + 1;
 /// first, because the guesses have become better.
 constexpr int longest_service = 50;
 
+void check_rows(const Field& saved, int dofs) {
+  if (saved.size() > 0 && saved.rows() != dofs)
+    throw InputError(format("factors of a surface with %td nodes, expected %d", saved.rows(), dofs));
+}
+
 }  // namespace
 
 LaggedBlockSolver::LaggedBlockSolver(const SurfaceSpace& space) : space_(space), block_(space.pattern()) {}
@@ -43,11 +48,13 @@ BlockSolver& LaggedBlockSolver::factorise(double alpha, const Field& x, const Sy
 }
 
 void LaggedBlockSolver::solve(double alpha, const Field& x, const SymmetricMatrix& M,
-                              const SymmetricMatrix& A, const Field& u_guess, const Field& w_guess,
-                              Field& r_to_u, Field& s_to_w) {
-  if (u_change_.size() == 0) u_change_ = w_change_ = Field::Zero(u_guess.rows(), u_guess.cols());
-  u_ = u_guess + u_change_;
-  w_ = w_guess + w_change_;
+                              const SymmetricMatrix& A, Guess& guess, Field& r_to_u, Field& s_to_w) {
+  if (guess.u_change.size() == 0) {
+    guess.u_change.setZero(guess.u.rows(), guess.u.cols());
+    guess.w_change = guess.u_change;
+  }
+  u_ = guess.u + guess.u_change;
+  w_ = guess.w + guess.w_change;
   std::optional<int> iterations;
   if (!is_due(alpha)) iterations = block_.refine(alpha, 1, 1, M, A, r_to_u, s_to_w, most_iterations, u_, w_);
   if (!iterations) {
@@ -61,8 +68,8 @@ void LaggedBlockSolver::solve(double alpha, const Field& x, const SymmetricMatri
   newest_iterations_ = *iterations;
   iterations_ += *iterations;
   ++steps_;
-  u_change_ = r_to_u - u_guess;
-  w_change_ = s_to_w - w_guess;
+  guess.u_change = r_to_u - guess.u;
+  guess.w_change = s_to_w - guess.w;
 }
 
 nlohmann::json LaggedBlockSolver::progress() const {
@@ -70,18 +77,12 @@ nlohmann::json LaggedBlockSolver::progress() const {
           {"x", packed(x_)},
           {"steps", steps_},
           {"iterations", iterations_},
-          {"newest_iterations", newest_iterations_},
-          {"u_change", packed(u_change_)},
-          {"w_change", packed(w_change_)}};
+          {"newest_iterations", newest_iterations_}};
 }
 
 void LaggedBlockSolver::resume(const nlohmann::json& saved) {
-  const Field x = unpacked(saved.at("x")), u_change = unpacked(saved.at("u_change")),
-              w_change = unpacked(saved.at("w_change"));
-  for (const Field* field : {&x, &u_change, &w_change})
-    if (field->size() > 0 && field->rows() != space_.dofs())
-      throw InputError(
-          format("factors of a surface with %td nodes, expected %d", field->rows(), space_.dofs()));
+  const Field x = unpacked(saved.at("x"));
+  check_rows(x, space_.dofs());
   alpha_ = 0;
   if (const double alpha = saved.at("alpha").get<double>(); alpha > 0) {
     SymmetricMatrix M = space_.matrix(), A = space_.matrix();
@@ -91,8 +92,16 @@ void LaggedBlockSolver::resume(const nlohmann::json& saved) {
   steps_ = saved.at("steps").get<int>();
   iterations_ = saved.at("iterations").get<int>();
   newest_iterations_ = saved.at("newest_iterations").get<int>();
-  u_change_ = u_change;
-  w_change_ = w_change;
+}
+
+nlohmann::json progress(const LaggedBlockSolver::Guess& guess) {
+  return {{"u_change", packed(guess.u_change)}, {"w_change", packed(guess.w_change)}};
+}
+
+void resume(LaggedBlockSolver::Guess& guess, const nlohmann::json& saved, int dofs) {
+  guess.u_change = unpacked(saved.at("u_change"));
+  guess.w_change = unpacked(saved.at("w_change"));
+  for (const Field* field : {&guess.u_change, &guess.w_change}) check_rows(*field, dofs);
 }
 
 }  // namespace esfem

@@ -8,7 +8,7 @@
 
 namespace esfem {
 
-/// Solves the block systems of a sequence of time steps, alpha M u - A w = r, A u + M w = s (N x 4), with the
+/// Solves the block systems of a sequence of time steps, alpha M u - A w = r, A u + M w = s (N x c), with the
 /// factors of an earlier step's system as long as that is cheaper than a factorisation per step:
 /// BlockSolver::refine from a guess, to the accuracy of a direct solution.
 ///
@@ -20,11 +20,17 @@ class LaggedBlockSolver {
   /// The space must outlive the solver.
   explicit LaggedBlockSolver(const SurfaceSpace& space);
 
-  /// Solves the system with M(x) and A(x) in place: the right-hand sides r and s become u and w. u_guess and
-  /// w_guess come from the steps before; the error of the newest guess is added to them. Throws as
-  /// BlockSolver does.
-  void solve(double alpha, const Field& x, const SymmetricMatrix& M, const SymmetricMatrix& A,
-             const Field& u_guess, const Field& w_guess, Field& r_to_u, Field& s_to_w);
+  /// The guess of a sequence of solutions, kept by the caller: u and w extrapolated from the steps before,
+  /// with the error that this extrapolation had in the newest step added to them.
+  struct Guess {
+    Field u, w;                ///< extrapolated
+    Field u_change, w_change;  ///< newest solution minus its extrapolation; empty: none yet
+  };
+
+  /// Solves the system with M(x) and A(x) in place: the right-hand sides r and s become u and w, and the
+  /// guess's changes those of this step. Throws as BlockSolver does.
+  void solve(double alpha, const Field& x, const SymmetricMatrix& M, const SymmetricMatrix& A, Guess& guess,
+             Field& r_to_u, Field& s_to_w);
 
   /// Factorises the system, for repeated solves.
   BlockSolver& factorise(double alpha, const Field& x, const SymmetricMatrix& M, const SymmetricMatrix& A);
@@ -44,12 +50,15 @@ class LaggedBlockSolver {
   BlockSolver block_;
   double alpha_ = 0;           ///< of the factors; 0: there are none
   Field x_;                    ///< nodes of the factors' matrices
-  int steps_ = 0;              ///< that the factors have served
+  int steps_ = 0;              ///< that the factors have served: solutions
   int iterations_ = 0;         ///< of all these steps
   int newest_iterations_ = 0;  ///< of the last step
-  Field u_change_, w_change_;  ///< solution minus guess of the newest step
   Field u_, w_;
   int factorisations_ = 0;
 };
+
+/// The changes of a guess, for checkpoints; resume throws InputError when they have not N rows.
+nlohmann::json progress(const LaggedBlockSolver::Guess& guess);
+void resume(LaggedBlockSolver::Guess& guess, const nlohmann::json& saved, int dofs);
 
 }  // namespace esfem

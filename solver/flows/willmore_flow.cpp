@@ -118,14 +118,25 @@ WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field the
 
 WillmoreFlow::~WillmoreFlow() = default;
 
+nlohmann::json WillmoreFlow::progress() const {
+  nlohmann::json saved = lagged_.progress();
+  saved.update(esfem::progress(tilde_));
+  return saved;
+}
+
+void WillmoreFlow::resume(const nlohmann::json& saved) {
+  lagged_.resume(saved);
+  esfem::resume(tilde_, saved, space_.dofs());
+}
+
 void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
   const double tau = step.tau, delta_0 = step.delta[0];
 
   step.extrapolate(&State::x, x_tilde_);
-  step.extrapolate(&State::u, u_tilde_);
-  step.extrapolate(&State::w, w_tilde_);
-  u_w_tilde_.resize(u_tilde_.rows(), 8);
-  u_w_tilde_ << u_tilde_, w_tilde_;
+  step.extrapolate(&State::u, tilde_.u);
+  step.extrapolate(&State::w, tilde_.w);
+  u_w_tilde_.resize(x_tilde_.rows(), 8);
+  u_w_tilde_ << tilde_.u, tilde_.w;
 
   // f(x~, u~) (+ F(x~, u~) w~) and g(x~, u~)
   assemble_regular(space_, x_tilde_, M_, A_);
@@ -143,7 +154,7 @@ void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
     implicit_->solve(space_, x_tilde_, u_w_tilde_, lagged_.factorise(delta_0 / tau, x_tilde_, M_, A_), next.u,
                      next.w);
   else
-    lagged_.solve(delta_0 / tau, x_tilde_, M_, A_, u_tilde_, w_tilde_, next.u, next.w);
+    lagged_.solve(delta_0 / tau, x_tilde_, M_, A_, tilde_, next.u, next.w);
   if (variant_.project) project(next.u, next.w);
 
   // (3.4): v = V nu, delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}

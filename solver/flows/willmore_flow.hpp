@@ -68,8 +68,8 @@ class WillmoreFlow {
 
   /// What the flow keeps from step to step, for checkpoints: resume(progress()) makes another flow continue
   /// with the same bits.
-  nlohmann::json progress() const { return lagged_.progress(); }
-  void resume(const nlohmann::json& saved) { lagged_.resume(saved); }
+  nlohmann::json progress() const;
+  void resume(const nlohmann::json& saved);
 
  private:
   struct ImplicitCoupling;
@@ -90,7 +90,8 @@ class WillmoreFlow {
   LaggedBlockSolver lagged_;
   std::unique_ptr<ImplicitCoupling> implicit_;
   Reinitialisation<State, Fields> reinitialisation_;
-  Field x_tilde_, u_tilde_, w_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
+  LaggedBlockSolver::Guess tilde_;  ///< u~ and w~
+  Field x_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
 };
 
 /// Start of a run.

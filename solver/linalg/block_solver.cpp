@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/linalg/block_solver.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <limits>
@@ -13,7 +14,7 @@ namespace esfem {
 
 namespace {
 
-constexpr int refined_columns = 4;
+constexpr int refined_columns = 4;  // at once
 
 /// Four complex columns, node by node: the real parts of a node and then its imaginary parts.
 using ComplexRows = Eigen::Matrix<double, Eigen::Dynamic, 2 * refined_columns, Eigen::RowMajor>;
@@ -77,6 +78,24 @@ struct BlockSolver::Factor {
         refined(b),
         rest(b) {}
 
+  /// Solves (M + i factor A) y = b from the guess y = refined, see BlockSolver::refine.
+  std::optional<int> refine(double beta_kappa, const SymmetricMatrix& M, const SymmetricMatrix& A, int most) {
+    const auto excess = [&] {
+      const ColumnSizes bound = attainable(M, A, beta_kappa, refined, b, rest);
+      subtract_product(M, A, beta_kappa, refined, b, rest);
+      return (sizes(rest) / bound).maxCoeff<Eigen::PropagateNaN>();
+    };
+    double before = excess();
+    for (int n = 1; n <= most; ++n) {
+      add_solution_of_rest();
+      const double now = excess();
+      if (now <= 1) return n;
+      if (!(now * std::pow(now / before, most - n) <= 1)) break;
+      before = now;
+    }
+    return {};
+  }
+
   /// One iteration of the refinement.
   void add_solution_of_rest() {
     factor.solve(
@@ -104,6 +123,14 @@ void BlockSolver::check_system(double alpha, double beta, double gamma, const Sy
     throw InputError("block system: matrix is not on the pattern that was analysed");
 }
 
+void BlockSolver::check_columns(const Field& r, const Field& other) const {
+  if (r.rows() == factor_->pattern->size && other.rows() == r.rows() && other.cols() == r.cols()) return;
+  throw InputError(
+      format("fields of a block system are %td x %td and %td x %td, expected %d rows and the same number of "
+             "columns",
+             r.rows(), r.cols(), other.rows(), other.cols(), factor_->pattern->size));
+}
+
 void BlockSolver::factorise(double alpha, double beta, double gamma, const SymmetricMatrix& M,
                             const SymmetricMatrix& A) {
   Factor& f = *factor_;
@@ -117,13 +144,7 @@ void BlockSolver::factorise(double alpha, double beta, double gamma, const Symme
 
 void BlockSolver::solve(Field& r_to_u, Field& s_to_w) {
   Factor& f = *factor_;
-  if (r_to_u.rows() != f.pattern->size || s_to_w.rows() != f.pattern->size ||
-      r_to_u.cols() != s_to_w.cols()) {
-    throw InputError(
-        format("right-hand sides of a block system are %td x %td and %td x %td, expected %d rows and "
-               "the same number of columns",
-               r_to_u.rows(), r_to_u.cols(), s_to_w.rows(), s_to_w.cols(), f.pattern->size));
-  }
+  check_columns(r_to_u, s_to_w);
   f.factor.solve(
       static_cast<int>(r_to_u.cols()),
       [&](int i, int c) { return std::complex<double>(f.kappa * r_to_u(i, c), s_to_w(i, c)); },
@@ -138,30 +159,23 @@ std::optional<int> BlockSolver::refine(double alpha, double beta, double gamma, 
                                        Field& u, Field& w) {
   Factor& f = *factor_;
   check_system(alpha, beta, gamma, M, A);
-  for (const Field* field : std::initializer_list<const Field*>{&r, &s, &u, &w}) {
-    if (field->rows() != f.pattern->size || field->cols() != refined_columns)
-      throw InputError(format("refinement of a block system: found a field of %td x %td, expected %d x %d",
-                              field->rows(), field->cols(), f.pattern->size, refined_columns));
+  for (const Field* field : std::initializer_list<const Field*>{&s, &u, &w}) check_columns(r, *field);
+  const double kappa = std::sqrt(gamma / (alpha * beta));
+  std::optional<int> iterations = 1;
+  for (Eigen::Index first = 0; first < r.cols(); first += refined_columns) {
+    const Eigen::Index count = std::min<Eigen::Index>(refined_columns, r.cols() - first);
+    const auto put = [&](ComplexRows& rows, double factor, const Field& real, const Field& imaginary) {
+      if (count < refined_columns) rows.setZero();
+      rows.leftCols(count) = factor * real.middleCols(first, count);
+      rows.middleCols(refined_columns, count) = imaginary.middleCols(first, count);
+    };
+    put(f.b, kappa, r, s);
+    put(f.refined, kappa * alpha, u, w);
+    const std::optional<int> of_group = f.refine(kappa * beta, M, A, most);
+    u.middleCols(first, count) = f.refined.leftCols(count) / (kappa * alpha);
+    w.middleCols(first, count) = f.refined.middleCols(refined_columns, count);
+    iterations = iterations && of_group ? std::max(iterations, of_group) : std::nullopt;
   }
-  const double kappa = std::sqrt(gamma / (alpha * beta)), factor = kappa * beta;
-  f.b << kappa * r, s;
-  f.refined << kappa * alpha * u, w;
-  const auto excess = [&] {
-    const ColumnSizes bound = attainable(M, A, factor, f.refined, f.b, f.rest);
-    subtract_product(M, A, factor, f.refined, f.b, f.rest);
-    return (sizes(f.rest) / bound).maxCoeff<Eigen::PropagateNaN>();
-  };
-  std::optional<int> iterations;
-  double before = excess();
-  for (int n = 1; n <= most && !iterations; ++n) {
-    f.add_solution_of_rest();
-    const double now = excess();
-    if (now <= 1) iterations = n;
-    if (!(now * std::pow(now / before, most - n) <= 1)) break;
-    before = now;
-  }
-  u = f.refined.leftCols<refined_columns>() / (kappa * alpha);
-  w = f.refined.rightCols<refined_columns>();
   return iterations;
 }
 

@@ -32,12 +32,13 @@ class BlockSolver {
   /// Solves for all columns at once, in place: the right-hand sides r and s (N x c) become u and w.
   void solve(Field& r_to_u, Field& s_to_w);
 
-  /// Solves another system, of which u and w (N x 4) are a guess, by iterative refinement: the factors of the
+  /// Solves another system, of which u and w (N x c) are a guess, by iterative refinement: the factors of the
   /// system that was factorised last precondition it. Ends when each column's residual in the complex form is
   /// at most 5e-16 of |right-hand side| + |diagonal of the matrix times y|, which is about what a direct
-  /// solution attains. Returns the number of iterations, at least one; none when more than `most` of them are
-  /// needed at the rate of the newest: then u and w are the last iterate. Allocates nothing from the second
-  /// call on. Throws as factorise and solve do; numbers that are not finite make it return none.
+  /// solution attains. Four columns at once: returns the largest number of iterations of these groups, at
+  /// least one; none when a group needs more than `most` of them at the rate of the newest: then u and w are
+  /// the last iterates. Allocates nothing from the second call on. Throws as factorise and solve do; numbers
+  /// that are not finite make it return none.
   std::optional<int> refine(double alpha, double beta, double gamma, const SymmetricMatrix& M,
                             const SymmetricMatrix& A, const Field& r, const Field& s, int most, Field& u,
                             Field& w);
@@ -45,6 +46,7 @@ class BlockSolver {
  private:
   void check_system(double alpha, double beta, double gamma, const SymmetricMatrix& M,
                     const SymmetricMatrix& A) const;
+  void check_columns(const Field& r, const Field& other) const;
 
   struct Factor;
   std::unique_ptr<Factor> factor_;

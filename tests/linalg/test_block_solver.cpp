@@ -168,6 +168,28 @@ TEST(BlockSolver, RefinementWithTheSystemsOwnFactorsTakesOneIteration) {
   EXPECT_LT(difference(w, w_direct), 1e-13);
 }
 
+TEST(BlockSolver, RefinementTakesAnyNumberOfColumns) {
+  const Blocks of(3);
+  BlockSolver direct(of.space.pattern()), solver(of.space.pattern());
+  const auto [M, A] = moved(of, 1e-3);
+  solver.factorise(1500, 1, 1, of.M, of.A);
+  direct.factorise(1500, 1, 1, M, A);
+  for (const int columns : {1, 4, 6, 9}) {
+    const Field r = of.r.col(0) * Eigen::RowVectorXd::LinSpaced(columns, 1, 2),
+                s = of.s.replicate(1, 3).leftCols(columns);
+    Field u = Field::Zero(r.rows(), columns), w = u, u_direct = r, w_direct = s;
+    EXPECT_TRUE(solver.refine(1500, 1, 1, M, A, r, s, 20, u, w));
+    direct.solve(u_direct, w_direct);
+    for (int c = 0; c < columns; ++c) {
+      EXPECT_LT(difference(u.col(c), u_direct.col(c)), 1e-12) << c << " of " << columns;
+      EXPECT_LT(difference(w.col(c), w_direct.col(c)), 1e-12) << c << " of " << columns;
+    }
+    u.setZero(), w.setZero();
+    u.col(columns - 1).setConstant(std::numeric_limits<double>::quiet_NaN());
+    EXPECT_FALSE(solver.refine(1500, 1, 1, M, A, r, s, 20, u, w)) << "of every group";
+  }
+}
+
 TEST(BlockSolver, RefinementGivesUpWhereTheFactorsAreTooOld) {
   const Blocks of(2);
   BlockSolver solver(of.space.pattern());
@@ -210,7 +232,7 @@ TEST(BlockSolver, SaysWhatIsWrong) {
   Field wrong = other.r;
   EXPECT_THAT([&] { solver.solve(wrong, w); }, ThrowsMessage<InputError>(HasSubstr("rows")));
   EXPECT_THAT([&] { solver.refine(1, 1, 1, of.M, of.A, of.r, of.s, 1, wrong, w); },
-              ThrowsMessage<InputError>(HasSubstr("found a field of 642 x 4")));
+              ThrowsMessage<InputError>(HasSubstr("162 x 4 and 642 x 4")));
 }
 
 }  // namespace
