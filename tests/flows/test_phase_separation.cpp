@@ -62,7 +62,9 @@ TEST(PhaseSeparation, IsTheImplicitSchemeWhereTheEnergyFalls) {
   PhaseSeparation flow(mixture.space, mixture.mesh.nodes, epsilon);
   LinearisedCahnHilliard<DoubleWell> implicit(mixture.space, DoubleWell(), at_rest, epsilon, 0.1);
   const UniformSteps grid{2, 1e-3, 10, parse_start("cascade")};
-  EXPECT_EQ(last_state(flow, grid, mixture.start).u, last_state(implicit, grid, mixture.start).u);
+  // Not to the bit: the compiler contracts the same template differently in the library and here.
+  const Field u = last_state(flow, grid, mixture.start).u;
+  EXPECT_LT((u - last_state(implicit, grid, mixture.start).u).norm(), 1e-12 * u.norm());
   EXPECT_EQ(flow.replaced_steps(), 0);
 }
 
