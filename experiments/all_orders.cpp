@@ -138,9 +138,7 @@ nlohmann::json parameters() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "all_orders";
-  experiment.paper = "esfem";
+  Experiment experiment("all_orders", "esfem");
   experiment.help =
       "The orders in h and tau of each flow for polynomial degrees 1 to 4 and BDF 1 to 5. Orders in h come "
       "from errors against\nexact solutions on three meshes (levels 0, 1, 2), orders in tau from errors "

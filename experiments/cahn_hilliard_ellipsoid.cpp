@@ -45,6 +45,7 @@ namespace {
 
 using namespace esfem;
 using State = CahnHilliardState;
+using Flow = EllipsoidCahnHilliard;
 
 const double epsilon = 0.5;
 const double largest_h = 0.84;  ///< 40, 160, 636, 2491, 9994 vertices on the levels 0 to 4
@@ -84,7 +85,7 @@ bool finds_starting_values(const Choice& choice) {
   return true;
 }
 
-MovingMesh& moving_mesh(const Choice& choice, MovingMeshes& meshes) {
+MovingMesh& mesh_of(const Choice& choice, MovingMeshes& meshes) {
   const int smallest = std::max(smallest_step, choice.step());
   std::optional<MovingMesh>& shared = meshes[{choice.level(), choice.degree(), smallest}];
   if (!shared) {
@@ -96,53 +97,12 @@ MovingMesh& moving_mesh(const Choice& choice, MovingMeshes& meshes) {
   return *shared;
 }
 
-/// The load of the exact solution times a factor.
-struct ScaledLoad : ManufacturedCahnHilliard::Problem {
-  double factor = 1;
-
-  void b(double t, const Field& x, Field& nodal) const {
-    Problem::b(t, x, nodal);
-    nodal *= factor;
-  }
-};
-
-using Flow = CahnHilliard<ScaledLoad>;
-
-/// theta for the given start.
-Field theta_of(const SurfaceSpace& space, const State& start) {
-  return cahn_hilliard_theta(space, start.x, start.u, start.w, epsilon,
-                             load_of_g(space, DoubleWell(), 0, start.x, start.u));
-}
-
-using ExactState = std::function<State(double t)>;
-
-/// Starting values. From interpolated u, w comes from the second equation.
-ExactState exact_starts(MovingMesh& on, StartValues values) {
-  return [&on, values](double t) {
-    State state = exact_cahn_hilliard_state(on.space, on.exact, on.nodes.at(t), t, values);
-    if (values == StartValues::interpolation) {
-      state.w = cahn_hilliard_w(on.space, state.x, state.u, epsilon,
-                                load_of_g(on.space, DoubleWell(), t, state.x, state.u));
-    }
-    return state;
-  };
-}
-
-Flow cahn_hilliard_flow(MovingMesh& on, Field theta, double factor_of_load = 1) {
-  ScaledLoad problem;
-  problem.exact = &on.exact;
-  problem.factor = factor_of_load;
-  return Flow(
-      on.space, problem, [&on](double t) -> const Field& { return on.nodes.at(t); }, epsilon,
-      std::move(theta));
-}
-
 /// Errors of d•u from Ritz maps with theta, where the backward differences of u stand for the derivative
 /// along the nodes: in L2 over [q tau, 1], the integrals as sums over the steps.
 void measure_derivative(MovingMesh& on, const UniformSteps& steps, Row& row) {
-  const ExactState starts = exact_starts(on, StartValues::ritz);
+  const auto starts = exact_starts(on, StartValues::ritz);
   const State start = starts(0);
-  Flow flow = cahn_hilliard_flow(on, theta_of(on.space, start));
+  Flow flow = cahn_hilliard_flow(on, cahn_hilliard_theta(on.space, DoubleWell(), epsilon, start));
   const ExactEvolution exact = exact_derivative(on);
   const std::vector<double> delta = bdf_delta(steps.order);
   std::deque<Field> newest;  // first, of q + 1 steps
@@ -166,10 +126,11 @@ void measure_derivative(MovingMesh& on, const UniformSteps& steps, Row& row) {
 /// printed the first line of (8.3) has f where it should have tau f: the load is too large by 1/tau.
 void measure_errors(MovingMesh& on, const std::string& run, const UniformSteps& steps, Row& row) {
   const bool ritz = run != "interpolation";
-  const ExactState starts = exact_starts(on, ritz ? StartValues::ritz : StartValues::interpolation);
+  const auto starts = exact_starts(on, ritz ? StartValues::ritz : StartValues::interpolation);
   const State start = starts(0);
-  Flow flow = cahn_hilliard_flow(on, ritz ? theta_of(on.space, start) : Field(),
-                                 run == "printed" ? 1 / steps.tau : 1);
+  Flow flow =
+      cahn_hilliard_flow(on, ritz ? cahn_hilliard_theta(on.space, DoubleWell(), epsilon, start) : Field(),
+                         run == "printed" ? 1 / steps.tau : 1);
 
   const ExactEvolution exact = exact_evolution(on.exact, on.nodes);
   ErrorRecorder errors(on.space, exact, on.mesh.nodes), initial_errors(on.space, exact, on.mesh.nodes);
@@ -188,9 +149,9 @@ void measure_errors(MovingMesh& on, const std::string& run, const UniformSteps& 
 void measure_order(MovingMesh& on, const UniformSteps& steps, Row& row) {
   const UniformSteps small{
       5, on.smallest_tau, static_cast<int>(std::lround(time_steps.end_time / on.smallest_tau)), {}};
-  const ExactState starts = exact_starts(on, StartValues::ritz);
+  const auto starts = exact_starts(on, StartValues::ritz);
   const State start = starts(0);
-  Flow flow = cahn_hilliard_flow(on, theta_of(on.space, start));
+  Flow flow = cahn_hilliard_flow(on, cahn_hilliard_theta(on.space, DoubleWell(), epsilon, start));
   const SmallSteps reference(flow, small, start, starts, small.steps / steps.steps);
 
   LargestDifferences differences(on.space, {{"u", 1}, {"w", 1}});
@@ -202,7 +163,7 @@ void measure_order(MovingMesh& on, const UniformSteps& steps, Row& row) {
 }
 
 void run(const Choice& choice, Row& row, MovingMeshes& meshes) {
-  MovingMesh& on = moving_mesh(choice, meshes);
+  MovingMesh& on = mesh_of(choice, meshes);
   describe_mesh(on.mesh, row);
   const UniformSteps steps{choice.bdf(), row.tau, row.steps, choice.start()};
   if (choice["run"] == "order")
@@ -228,9 +189,7 @@ double cost(const Choice& choice) {
 
 int main(int argc, char** argv) {
   MovingMeshes meshes;
-  Experiment experiment;
-  experiment.stem = "cahn_hilliard_ellipsoid";
-  experiment.paper = "bk22";
+  Experiment experiment("cahn_hilliard_ellipsoid", "bk22");
   experiment.help =
       "The Cahn-Hilliard equation on an evolving ellipsoid (bk22 Figures 2 to 5): errors of u and w over "
       "step size and mesh\n"

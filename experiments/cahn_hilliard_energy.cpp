@@ -162,9 +162,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "cahn_hilliard_energy";
-  experiment.paper = "bk22";
+  Experiment experiment("cahn_hilliard_energy", "bk22");
   experiment.help =
       "Ginzburg-Landau energy of the Cahn-Hilliard equation, epsilon = 0.1, on the ellipsoid with a(t) = 1 + "
       "0.25 sin(10 pi t)\n"

@@ -33,7 +33,6 @@
 #include "solver/analysis/energy_series.hpp"
 #include "solver/analysis/series.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
-#include "solver/geometry/ritz_map.hpp"
 #include "solver/problems/evolving_ellipsoid.hpp"
 
 namespace {
@@ -41,8 +40,6 @@ namespace {
 using namespace esfem;
 using State = CahnHilliardState;
 
-/// The paper's Ritz map has no length in it, though the radius is 5.
-const double ritz_length = 1;
 const HalvedSteps time_steps{5, 0.0125};
 const EvolvingEllipsoid moving_ellipsoid{0.5, 5, initial_radius};
 const std::vector<double> snapshot_times = {1, 2, 3};  // beside the start and the end
@@ -68,38 +65,6 @@ std::vector<Block> preset(bool paper) {
   if (paper) blocks.push_back({{"initial", {"ritz", "interpolation_theta"}}, {"level", range(0, finest)}});
   blocks.push_back({{"initial", "interpolation"}, {"constant", "printed"}, {"level", 0}});
   return blocks;
-}
-
-const std::vector<std::string> by_ritz_map = {"ritz_theta", "ritz"};
-const std::vector<std::string> with_theta = {"ritz_theta", "interpolation_theta"};
-
-bool is_one_of(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
-double factor(const std::string& constant) {
-  return constant == "unit" ? 1 / 226.7724255776 : 225.0 / 56693;
-}
-
-struct InitialValues {
-  State state;
-  Field theta;  ///< empty: none
-};
-
-InitialValues initial_values(const SurfaceSpace& space, const Field& x, const std::string& initial,
-                             const Concentration& u_0, double epsilon) {
-  const Surface sphere = moving_ellipsoid.surface(0);
-  Field u(x.rows(), 1);
-  if (is_one_of(by_ritz_map, initial)) {
-    u = ritz_map(space, x, sphere, on_sphere(u_0), ritz_length);
-  } else {
-    for (int j = 0; j < x.rows(); ++j) u(j, 0) = u_0(x(j, 0), x(j, 1), x(j, 2));
-  }
-  if (!is_one_of(with_theta, initial))
-    return {cahn_hilliard_start(space, DoubleWell(), epsilon, 0, x, u), {}};
-  const Field g = load_of_g(space, DoubleWell(), 0, x, u);
-  const Field w = ritz_map(space, x, sphere, on_sphere(Potential{u_0, epsilon}), ritz_length);
-  return {cahn_hilliard_state(space, 0, x, u, w), cahn_hilliard_theta(space, x, u, w, epsilon, g)};
 }
 
 /// The flow from given initial values.
@@ -190,10 +155,11 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
 
   // 2. The flow from the initial values, and beside it (3.12).
   const double epsilon = choice.number("epsilon");
-  const Concentration u_0{factor(choice["constant"])};
+  const Concentration u_0{choice["constant"] == "unit" ? 1 / 226.7724255776 : 225.0 / 56693};
   const UniformSteps steps{choice.bdf(), row.tau, row.steps, choice.start()};
   const auto starts = [&](const std::string& initial) {
-    return initial_values(space, mesh.nodes, initial, u_0, epsilon);
+    return initial_values(space, mesh.nodes, u_0, epsilon, initial.rfind("ritz", 0) == 0,
+                          initial.find("theta") != std::string::npos);
   };
   const bool compared = choice["initial"] != "interpolation";
   Reference reference;
@@ -228,9 +194,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "cahn_hilliard_initial_values";
-  experiment.paper = "bk22";
+  Experiment experiment("cahn_hilliard_initial_values", "bk22");
   experiment.help =
       "The Cahn-Hilliard equation on an evolving ellipsoid from interpolated initial values and from their "
       "Ritz maps with the\n"

@@ -43,13 +43,6 @@ const double steady_time = 1.5e5, early_time = 300, first_step = 0.01, largest_t
 /// where a domain vanishes, which the root mean square hardly shows.
 const double linearised_again_from = 0.03;
 
-/// The times of the published run until its third published energy.
-std::vector<double> moose_times() {
-  std::vector<double> times = {0};
-  for (int n = 0; n < 20; ++n) times.push_back(times.back() + std::pow(1.1, std::min(n, 5)));
-  return times;
-}
-
 bool is_adaptive(const Choice& choice) {
   return choice["stepping"] == "adaptive";
 }
@@ -168,9 +161,7 @@ bool has_adaptive_order(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "cahn_hilliard_pfhub";
-  experiment.paper = "pfhub";
+  Experiment experiment("cahn_hilliard_pfhub", "pfhub");
   experiment.help =
       "Spinodal decomposition on a sphere (PFHub benchmark 1d): energies over time until the state is "
       "steady, and snapshots of\n"

@@ -171,9 +171,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "coupled_diffusion";
-  experiment.paper = "nick18";
+  Experiment experiment("coupled_diffusion", "nick18");
   experiment.help =
       "A growing sphere whose velocity is coupled to diffusion on it (nick18 Figures 1 to 5): errors of "
       "position x, velocity v and\nu at t = 1 over step size and mesh width. Step sizes 0.1 2^-k, k = 0, 1, "

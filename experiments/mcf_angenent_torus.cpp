@@ -139,9 +139,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "mcf_angenent_torus";
-  experiment.paper = "esfem";
+  Experiment experiment("mcf_angenent_torus", "esfem");
   experiment.help =
       "Mean curvature flow of the self-shrinking torus of Angenent on [0, 0.2]: errors of position x,\n"
       "velocity v, normal nu and mean curvature H over step size and mesh width. Step sizes 0.02 2^-k,\n"

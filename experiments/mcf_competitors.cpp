@@ -127,9 +127,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "mcf_competitors";
-  experiment.paper = "esfem";
+  Experiment experiment("mcf_competitors", "esfem");
   experiment.help =
       "Mean curvature flow of the sphere of radius 2 on [0, 0.6] and the self-shrinking torus on [0, 0.2]\n"
       "by three schemes: errors, distance of the nodes from the exact surface, and seconds of the steps.\n"

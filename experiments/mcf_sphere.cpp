@@ -154,9 +154,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "mcf_sphere";
-  experiment.paper = "kll19";
+  Experiment experiment("mcf_sphere", "kll19");
   experiment.help =
       "Mean curvature flow of the sphere of radius 2 on [0, 0.6]: errors of position x, velocity v, normal\n"
       "nu and mean curvature H over step size and mesh width (kll19 Figures 13.1, 13.2). Step sizes\n"

@@ -142,9 +142,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "surface_diffusion";
-  experiment.paper = "kll21";
+  Experiment experiment("surface_diffusion", "kll21");
   experiment.help =
       "Surface diffusion V = Delta H of the ellipsoid with half axes 2, 1, 1 to t = 0.8 (kll21 (1.2)):\n"
       "area, volume, radius and snapshots, with fixed steps 0.01 2^-k with and without projections, with\n"

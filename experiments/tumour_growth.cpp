@@ -80,9 +80,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "tumour_growth";
-  experiment.paper = "esfem";
+  Experiment experiment("tumour_growth", "esfem");
   experiment.help =
       "Growth of a tumour from the unit sphere to t = 5: time series and snapshots of a surface that grows "
       "where there is\nactivator. Step sizes 0.01 2^-k; level 0: 2,562 nodes, level 1: 10,242. No units.\n\n"

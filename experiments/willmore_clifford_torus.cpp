@@ -116,9 +116,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "willmore_clifford_torus";
-  experiment.paper = "kll21";
+  Experiment experiment("willmore_clifford_torus", "kll21");
   experiment.help =
       "Willmore flow of the Clifford torus with radii 1 and 1/sqrt 2 on [0, 1] (kll21 Figure 7.4): errors of "
       "position x,\n"

@@ -166,9 +166,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "willmore_competitors";
-  experiment.paper = "kll21";
+  Experiment experiment("willmore_competitors", "kll21");
   experiment.help =
       "Willmore flow of the unit sphere, the Clifford torus (radii 1, 2^(-1/2)) and an ellipsoid\n"
       "(1, 1, 0.6) by three schemes: errors, energies, quality of the mesh and seconds per step. Backward\n"

@@ -171,9 +171,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "willmore_relaxation";
-  experiment.paper = "kll21";
+  Experiment experiment("willmore_relaxation", "kll21");
   experiment.help =
       "Willmore flow of an ellipsoid, a red blood cell and a perturbed torus to t = 4 (kll21 Figure 7.5):\n"
       "energies, radii and snapshots, with the paper's steps, with adaptive steps, and with relaxation to\n"

@@ -135,9 +135,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "willmore_sphere";
-  experiment.paper = "kll21";
+  Experiment experiment("willmore_sphere", "kll21");
   experiment.help =
       "Willmore flow of the unit sphere on [0, 1], without and with projections of nu_h and z_h (kll21 "
       "Figures 7.1 to 7.3):\n"

@@ -90,9 +90,7 @@ void run(const Choice& choice, Row& row, const std::string&) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment;
-  experiment.stem = "willmore_time_orders";
-  experiment.paper = "kll21";
+  Experiment experiment("willmore_time_orders", "kll21");
   experiment.help =
       "Orders in time of BDF 1 to 4 for Willmore flow of an ellipsoid on [0, 0.4], with and without\n"
       "projections of nu_h and z_h, against small steps on the same mesh. Step sizes 0.1 2^-k, k = 1..6. No "

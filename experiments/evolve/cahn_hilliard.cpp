@@ -26,8 +26,7 @@ void run_ellipsoid(const Run& run) {
   const CahnHilliardState start = exact_state(0);
   Field theta;
   if (config.variant.truth("theta"))
-    theta = cahn_hilliard_theta(run.space, start.x, start.u, start.w, exact.epsilon(),
-                                load_of_g(run.space, DoubleWell(), 0, start.x, start.u));
+    theta = cahn_hilliard_theta(run.space, DoubleWell(), exact.epsilon(), start);
   run_flow(CahnHilliard(run.space, exact.problem(), motion, exact.epsilon(), theta), run, start, exact_state);
 }
 

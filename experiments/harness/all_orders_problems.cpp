@@ -122,11 +122,9 @@ struct CahnHilliardOnEllipsoid {
         exact(exact_evolution(manufactured, nodes)) {}
   CahnHilliardOnEllipsoid(const CahnHilliardOnEllipsoid&) = delete;  // `exact` refers to other members
   Flow flow() const {
-    const Flow::State start = state(0);
-    const Field load = load_of_g(on.space, DoubleWell(), 0, start.x, start.u);
     return {on.space, manufactured.problem(), [this](double t) -> const Field& { return nodes.at(t); },
             manufactured.epsilon(),
-            cahn_hilliard_theta(on.space, start.x, start.u, start.w, manufactured.epsilon(), load)};
+            cahn_hilliard_theta(on.space, DoubleWell(), manufactured.epsilon(), state(0))};
   }
   Flow::State state(double t) const {
     return exact_cahn_hilliard_state(on.space, manufactured, nodes.at(t), t, StartValues::ritz);

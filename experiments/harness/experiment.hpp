@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 
 #include "experiments/harness/choice.hpp"
 #include "solver/tables/fit_orders.hpp"
@@ -13,8 +14,8 @@ namespace esfem {
 /// An experiment: a grid of independent runs (cells), what one of them does, and how its orders are fitted.
 /// Options, names of cells, labels and the parameters of the table follow from the grid.
 struct Experiment {
-  std::string stem, paper;
-  std::string help;  ///< what it computes, units, sample command lines: the head of --help
+  std::string stem, paper;  ///< names of its files; key of the paper in tables
+  std::string help;         ///< what it computes, units, sample command lines: the head of --help
   Grid grid;
   std::function<HalvedSteps(const Choice&)> steps;
   std::function<double(const Choice&)> cost;  ///< estimated seconds on one core
@@ -26,6 +27,8 @@ struct Experiment {
   nlohmann::json parameters = nlohmann::json::object();  ///< what a table says beside the choices
   std::string meshes = "";                               ///< how meshes are generated, for the same
   RowRange fit_range = {};
+
+  Experiment(std::string stem, std::string paper) : stem(std::move(stem)), paper(std::move(paper)) {}
 };
 
 /// Where the cell with this folder keeps its checkpoint; it is removed when the row is written.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "solver/flows/cahn_hilliard.hpp"
 #include "solver/geometry/ritz_map.hpp"
 #include "solver/mesh/mesh.hpp"
 #include "solver/surfaces/surface.hpp"
@@ -67,6 +68,30 @@ double largest_on_sphere(const Function& f) {
       step /= 2;
   }
   return size(best);
+}
+
+/// Initial values of the runs.
+struct InitialValues {
+  CahnHilliardState state;
+  Field theta;  ///< empty: none
+};
+
+/// From u: its interpolation, or its Ritz map, with the theta that belongs to the Ritz map of w, or with w
+/// from the second equation. The paper's Ritz map has no length in it, though the radius is 5.
+inline InitialValues initial_values(const SurfaceSpace& space, const Field& x, const Concentration& u_0,
+                                    double epsilon, bool by_ritz_map, bool with_theta) {
+  const double ritz_length = 1;
+  const Surface surface = sphere(initial_radius);
+  Field u(x.rows(), 1);
+  if (by_ritz_map) {
+    u = ritz_map(space, x, surface, on_sphere(u_0), ritz_length);
+  } else {
+    for (int j = 0; j < x.rows(); ++j) u(j, 0) = u_0(x(j, 0), x(j, 1), x(j, 2));
+  }
+  if (!with_theta) return {cahn_hilliard_start(space, DoubleWell(), epsilon, 0, x, u), {}};
+  const Field w = ritz_map(space, x, surface, on_sphere(Potential{u_0, epsilon}), ritz_length);
+  const CahnHilliardState state = cahn_hilliard_state(space, 0, x, u, w);
+  return {state, cahn_hilliard_theta(space, DoubleWell(), epsilon, state)};
 }
 
 }  // namespace esfem

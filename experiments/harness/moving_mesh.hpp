@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <utility>
@@ -63,6 +64,37 @@ inline ExactEvolution exact_derivative(MovingMesh& on) {
     }
   };
   return exact;
+}
+
+/// The load of the exact solution times a factor.
+struct ScaledLoad : ManufacturedCahnHilliard::Problem {
+  double factor = 1;
+
+  void b(double t, const Field& x, Field& nodal) const {
+    Problem::b(t, x, nodal);
+    nodal *= factor;
+  }
+};
+
+using EllipsoidCahnHilliard = CahnHilliard<ScaledLoad>;
+
+/// Exact starting values. From interpolated u, w comes from the second equation.
+inline std::function<CahnHilliardState(double t)> exact_starts(MovingMesh& on, StartValues values) {
+  return [&on, values](double t) {
+    const CahnHilliardState state = exact_cahn_hilliard_state(on.space, on.exact, on.nodes.at(t), t, values);
+    if (values == StartValues::ritz) return state;
+    return cahn_hilliard_start(on.space, DoubleWell(), on.exact.epsilon(), t, state.x, state.u);
+  };
+}
+
+/// The flow on it: (8.3), or with a load that is this factor times that of the exact solution.
+inline EllipsoidCahnHilliard cahn_hilliard_flow(MovingMesh& on, Field theta, double factor_of_load = 1) {
+  ScaledLoad problem;
+  problem.exact = &on.exact;
+  problem.factor = factor_of_load;
+  return EllipsoidCahnHilliard(
+      on.space, problem, [&on](double t) -> const Field& { return on.nodes.at(t); }, on.exact.epsilon(),
+      std::move(theta));
 }
 
 }  // namespace esfem

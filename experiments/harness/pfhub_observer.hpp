@@ -2,7 +2,9 @@
 // Records of the spinodal decomposition on a sphere (PFHub benchmark 1d).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "solver/analysis/run_recorder.hpp"
@@ -22,6 +24,13 @@ const std::array<PublishedTime, 6> published_times = {{{"6.1051", 6.1051},
                                                        {"297.45", 297.45},
                                                        {"1000", 1000},
                                                        {"5006", 5006}}};
+
+/// The times of the published run until its third published energy.
+inline std::vector<double> moose_times() {
+  std::vector<double> times = {0};
+  for (int n = 0; n < 20; ++n) times.push_back(times.back() + std::pow(1.1, std::min(n, 5)));
+  return times;
+}
 
 /// Observes every step of a run; records the first 200, then every fourth, and the last one: c and mu, and
 /// the series energy, min_c, max_c and domains, the number of connected parts of the surface where c > 0.5,

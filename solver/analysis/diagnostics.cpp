@@ -65,6 +65,29 @@ void record_profile(const Field& x, Series& series) {
   series["tip"].push_back(x.col(2).cwiseAbs().maxCoeff());
 }
 
+void record_node_density(const Connectivity& elements, const Field& x, Series& series) {
+  const int rings = 10;
+  const double tip = x.col(2).cwiseAbs().maxCoeff();
+  std::vector<double> area(rings, 0), count(rings, 0);
+  for (Eigen::Index e = 0; e < elements.rows(); ++e) {
+    const Vec3 a = x.row(elements(e, 0)), b = x.row(elements(e, 1)), c = x.row(elements(e, 2));
+    const int ring = std::min(rings - 1, static_cast<int>(rings * std::abs((a + b + c)[2] / 3) / tip));
+    area[ring] += (b - a).cross(c - a).norm() / 2;
+    count[ring] += 1;
+  }
+  const double mean_of_all = std::accumulate(area.begin(), area.end(), 0.0) / elements.rows();
+  double smallest = mean_of_all, x3 = 0;
+  for (int ring = 0; ring < rings; ++ring) {
+    if (count[ring] == 0 || area[ring] / count[ring] >= smallest) continue;
+    smallest = area[ring] / count[ring];
+    x3 = (ring + 0.5) / rings * tip;
+  }
+  Eigen::Index widest;
+  x.leftCols(2).rowwise().norm().maxCoeff(&widest);
+  series["smallest_elements"].push_back(smallest / mean_of_all);
+  series["smallest_elements_x3"].push_back(x3 / std::abs(x(widest, 2)));
+}
+
 double fitted_sphere_radius(const Field& x) {
   Eigen::MatrixXd terms(x.rows(), 4);
   terms << 2 * x, Eigen::VectorXd::Ones(x.rows());

@@ -29,6 +29,11 @@ void record_normal_length(const Field& nu, Series& series);
 /// "widest_radius" (largest distance of a node from the axis) and "tip" (largest |x3| of a node).
 void record_profile(const Field& x, Series& series);
 
+/// Appends how the nodes have spread: of ten rings of equal height |x3|, from the neck to the tip, the one
+/// whose triangles (between the corners) have the smallest mean area. "smallest_elements" is this area over
+/// that of all, "smallest_elements_x3" the middle of the ring over |x3| of the widest circle.
+void record_node_density(const Connectivity& elements, const Field& x, Series& series);
+
 /// The radius of the sphere that fits the nodes best: least squares of |x|² = 2 c . x + const over centre and
 /// radius.
 double fitted_sphere_radius(const Field& x);

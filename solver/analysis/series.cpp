@@ -22,6 +22,12 @@ std::size_t nearest(const Series& series, double t) {
   return std::min_element(times.begin(), times.end(), closer) - times.begin();
 }
 
+std::optional<double> recorded_at(const Series& series, const std::string& name, double t) {
+  const std::size_t i = nearest(series, t);
+  if (std::abs(series.at("t")[i] - t) > 1e-9) return {};
+  return series.at(name)[i];
+}
+
 double value_at(const Series& series, const std::string& name, double t) {
   return series.at(name)[first_at(series, t)];
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,9 @@ std::size_t first_at(const Series& series, double t);
 
 /// The number of the entry whose time is nearest to t. Throws InputError when the series is empty.
 std::size_t nearest(const Series& series, double t);
+
+/// The value of `name` at time t; nothing when there is no entry within 1e-9 of it, as after a run's end.
+std::optional<double> recorded_at(const Series& series, const std::string& name, double t);
 
 /// The value of `name` at first_at(t).
 double value_at(const Series& series, const std::string& name, double t);

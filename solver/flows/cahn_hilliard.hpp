@@ -126,6 +126,14 @@ Field load_of_g(const SurfaceSpace& space, const Problem& problem, double t, con
 Field cahn_hilliard_theta(const SurfaceSpace& space, const Field& x, const Field& u, const Field& w,
                           double epsilon, const Field& load_of_g);
 
+/// The same for a start and the g of a Problem.
+template <class Problem>
+Field cahn_hilliard_theta(const SurfaceSpace& space, const Problem& problem, double epsilon,
+                          const CahnHilliardState& start) {
+  return cahn_hilliard_theta(space, start.x, start.u, start.w, epsilon,
+                             load_of_g(space, problem, start.t, start.x, start.u));
+}
+
 /// w from the second equation for given u, without theta.
 Field cahn_hilliard_w(const SurfaceSpace& space, const Field& x, const Field& u, double epsilon,
                       const Field& load_of_g);

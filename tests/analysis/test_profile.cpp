@@ -28,6 +28,19 @@ TEST(Profile, OfTheDumbbell) {
   }
 }
 
+TEST(NodeDensity, IsThatOfTheRingWithTheSmallestElements) {
+  const Mesh mesh = generate_mesh(dumbbell(), 0.1);
+  Series series;
+  record_node_density(mesh.elements, mesh.nodes, series);
+  EXPECT_GT(series["smallest_elements"].back(), 0.9) << "edges of nearly one length";
+  // Squeezed towards the plane x3 = 0, where triangles become small.
+  Field x = mesh.nodes;
+  x.col(2) = x.col(2).cwiseProduct(x.col(2).cwiseAbs());
+  record_node_density(mesh.elements, x, series);
+  EXPECT_LT(series["smallest_elements"].back(), 0.7);
+  EXPECT_LT(series["smallest_elements_x3"].back(), 0.3);
+}
+
 TEST(FittedRadii, OfASphereAndATorusAwayFromTheOrigin) {
   Field ball = 1.3 * icosphere(1, 2).nodes;
   ball.rowwise() += Eigen::RowVector3d(0.4, -2, 1);

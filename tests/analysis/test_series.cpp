@@ -20,6 +20,13 @@ TEST(Series, ValueIsThatAtOrAfterTheTimeOrTheLast) {
   EXPECT_THROW(first_at({{"t", {}}}, 0), InputError);
 }
 
+TEST(Series, NothingIsRecordedAtTimesBetweenStepsAndAfterTheEnd) {
+  const Series series = {{"t", {0, 0.1, 0.3}}, {"f", {5, 6, 7}}};
+  EXPECT_EQ(recorded_at(series, "f", 0.1 + 1e-12), 6);
+  EXPECT_EQ(recorded_at(series, "f", 0.15), std::nullopt);
+  EXPECT_EQ(recorded_at(series, "f", 0.4), std::nullopt);
+}
+
 TEST(Series, LargestRiseIsThatOfOneStep) {
   EXPECT_EQ(largest_rise({3, 1, 2, 4, 0, 1}), 2);
   EXPECT_EQ(largest_rise({3, 2, 1}), 0);

@@ -173,8 +173,7 @@ struct CahnHilliardCase {
     const State start = starts(0);
     Field theta;
     if (with_theta) {
-      theta = cahn_hilliard_theta(space, start.x, start.u, start.w, epsilon,
-                                  load_of_g(space, DoubleWell(), 0, start.x, start.u));
+      theta = cahn_hilliard_theta(space, DoubleWell(), epsilon, start);
     }
     CahnHilliard flow(space, exact.problem(), motion, epsilon, theta);
     return last_state(flow, {json["q"], tau, json["steps"], {}}, {start, starts});
@@ -216,9 +215,7 @@ TEST(CahnHilliard, KeepsTheMassAndLosesEnergyOnAStationarySurface) {
   const double eps = 0.2;
   const NodalMotion at_rest = [&](double) -> const Field& { return mesh.nodes; };
   CahnHilliard flow(space, DoubleWell(), at_rest, eps);
-  const State start = cahn_hilliard_state(
-      space, 0, mesh.nodes, u,
-      cahn_hilliard_w(space, mesh.nodes, u, eps, load_of_g(space, DoubleWell(), 0, mesh.nodes, u)));
+  const State start = cahn_hilliard_start(space, DoubleWell(), eps, 0, mesh.nodes, u);
   std::vector<double> mass, energy;
   integrate(flow, {1, 1e-3, 40, {}}, start, [&](int, const State& state) {
     mass.push_back(state.Mu.sum());

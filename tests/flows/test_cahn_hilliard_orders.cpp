@@ -34,10 +34,7 @@ struct Ellipsoid {
     return exact_cahn_hilliard_state(space, exact, nodes.at(t), t, values);
   }
 
-  Field theta(const State& start) const {
-    return cahn_hilliard_theta(space, start.x, start.u, start.w, epsilon,
-                               load_of_g(space, DoubleWell(), 0, start.x, start.u));
-  }
+  Field theta(const State& start) const { return cahn_hilliard_theta(space, DoubleWell(), epsilon, start); }
 };
 
 /// The semi-discrete solution by BDF5 with steps of 1/640, and runs that start from it at t = 0.4: Ritz maps

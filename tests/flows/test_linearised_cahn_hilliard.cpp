@@ -41,9 +41,7 @@ struct Waves {
   explicit Waves(double amplitude = 0.5) {
     const Field u =
         amplitude * ((4 * mesh.nodes.col(0)).array().cos() * (3 * mesh.nodes.col(2)).array().sin());
-    const Field w =
-        cahn_hilliard_w(space, mesh.nodes, u, epsilon, load_of_g(space, DoubleWell(), 0, mesh.nodes, u));
-    start = cahn_hilliard_state(space, 0, mesh.nodes, u, w);
+    start = cahn_hilliard_start(space, DoubleWell(), epsilon, 0, mesh.nodes, u);
   }
 
   NodalMotion motion() {

@@ -76,9 +76,7 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
 
 int main(int argc, char** argv) {
   using namespace esfem;
-  Experiment experiment;
-  experiment.stem = "fake_experiment";
-  experiment.paper = "none";
+  Experiment experiment("fake_experiment", "none");
   experiment.help = "Errors h^exponent + tau^3 by formula.\nSample run: fake_experiment --list";
   experiment.grid.axes = {{"exponent", {}, "of h"}};
   experiment.grid.otherwise = otherwise;
