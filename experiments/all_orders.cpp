@@ -19,8 +19,9 @@
 //          values contain have died out.
 // A run is unstable when it ends before its time or an error is larger with tau than with 2 tau.
 //
-// Problems: mean curvature flow, (5.1) of kll19 and Dziuk's scheme, on the self-shrinking torus; nick18's
-// growing sphere; Willmore flow without projections, in space on the Clifford torus until t = 0.02 (later
+// Problems: mean curvature flow, (5.1) of kll19 and Dziuk's scheme, on the self-shrinking torus; generalised
+// mean curvature flow with V = H², in space of a sphere, in time of an ellipsoid; nick18's growing sphere;
+// Willmore flow without projections, in space on the Clifford torus until t = 0.02 (later
 // |nu_h| leaves 1, like exp(100t) at the hole), in time of an ellipsoid; bk22's evolving ellipsoid.
 //
 // Expected: q in tau; k in h in H1 (kll19 Theorem 6.1, nick18 Theorem 2.1, kll21 Theorem 4.1 for k >= 2, bk22

@@ -21,6 +21,7 @@ LABELS = ("flow", "degree", "bdf", "run")
 FLOWS = {
     "mean_curvature": ("mean curvature flow, (5.1)", ("x", "v", "nu", "H")),
     "dziuk": ("mean curvature flow, Dziuk", ("x", "v", "nu", "H")),
+    "generalised_mean_curvature": (r"generalised mean curvature flow, $V = H^2$", ("x", "v", "nu", "V")),
     "coupled_diffusion": ("surface coupled to diffusion", ("x", "v", "u")),
     "willmore": ("Willmore flow", ("x", "nu", "H")),
     "cahn_hilliard": ("Cahn–Hilliard", ("u", "w")),

@@ -18,6 +18,7 @@
 #include "solver/mesh/generate.hpp"
 #include "solver/problems/evolving_ellipsoid.hpp"
 #include "solver/problems/exact_states.hpp"
+#include "solver/problems/power_law_sphere.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
 
 namespace esfem {
@@ -95,6 +96,40 @@ struct DziukOnTorus {
   DziukOnTorus(int degree, double h, double) : on(angenent_torus(), angenent_grid(h), degree) {}
   Flow flow() const { return Flow(on.space); }
   Flow::State state(double t) const { return exact_dziuk_state(exact, on.mesh.nodes, t); }
+};
+
+const PowerLaw squared_curvature(2);
+
+/// v = -H² nu of a sphere.
+struct PowerLawOnSphere {
+  using Flow = GeneralisedMeanCurvatureFlow;
+  static constexpr double radius = 2;
+  InitialSurface on;
+  ExactEvolution exact = power_law_sphere(radius, squared_curvature);
+
+  PowerLawOnSphere(int degree, double h, double)
+      : on(sphere(radius), generate_mesh(sphere(radius), h), degree) {}
+  Flow flow() const { return {on.space, squared_curvature}; }
+  Flow::State state(double t) const {
+    return exact_generalised_mean_curvature_state(exact, on.mesh.nodes, t);
+  }
+};
+
+/// v = -H² nu of an ellipsoid, on which the normals of moving nodes change.
+struct PowerLawOnEllipsoid {
+  using Flow = GeneralisedMeanCurvatureFlow;
+  const Surface surface = ellipsoid(2, 2, 1.6);
+  ExactEvolution exact;
+  InitialSurface on;
+  Flow::State start;
+
+  PowerLawOnEllipsoid(int degree, double h, double) : on(surface, generate_mesh(surface, h), degree) {
+    const Field u = mean_curvature_state_on(surface, on.mesh.nodes).u;
+    start = generalised_mean_curvature_state(squared_curvature, on.mesh.nodes, u.leftCols(3), u.col(3));
+    exact.quantities = {{"x", 3}, {"v", 3}, {"nu", 3}, {"V", 1}};
+  }
+  Flow flow() const { return {on.space, squared_curvature}; }
+  const Flow::State& state(double) const { return start; }
 };
 
 struct CoupledOnSphere {
@@ -313,6 +348,10 @@ const std::vector<OrdersOfFlow>& orders_of_flows() {
        {0.2, 0.02}, {0.235, 0.47, 0.63, 0.75}, {3, 3, 2, 2, 2},
        {0.2, 0.02}, 0.08, {0.3, 0.47, 0.75, 0.94}, {3, 3, 3, 2, 2},
        113, 1.2e-6},
+      {"generalised_mean_curvature", "v = -H² nu: sphere; ellipsoid", {"x", "v", "nu", "V"},
+       {0.1, 0.01}, {0.3, 0.7, 0.9, 1.1}, {6, 5, 4, 4, 4},
+       {0.2, 0.02}, 0.08, {0.63, 0.94, 1.25, 1.25}, {2, 2, 2, 2, 2},
+       110, 2.4e-6},
       {"coupled_diffusion", "growing sphere", {"x", "v", "u"},
        {0.2, 0.1}, {0.19, 0.38, 0.57, 0.75}, {6, 5, 4, 4, 3},
        {1, 0.1}, 0.4, {0.5, 0.8, 1.0, 1.0}, {3, 2, 3, 3, 3},
@@ -336,11 +375,13 @@ double OrdersOfFlow::edge_length(int degree, int level) const {
 
 Row run_all_orders(const OrderRun& run, Row row) {
   using Runs = std::map<std::string, std::function<void(const OrderRun&, Row&)>>;
-  static const Runs runs = {{"mean_curvature", run_problem<MeanCurvatureOnTorus>},
-                            {"dziuk", run_problem<DziukOnTorus>},
-                            {"coupled_diffusion", run_problem<CoupledOnSphere>},
-                            {"willmore", run_problem<WillmoreOnTorus, WillmoreOnEllipsoid>},
-                            {"cahn_hilliard", run_problem<CahnHilliardOnEllipsoid>}};
+  static const Runs runs = {
+      {"mean_curvature", run_problem<MeanCurvatureOnTorus>},
+      {"dziuk", run_problem<DziukOnTorus>},
+      {"generalised_mean_curvature", run_problem<PowerLawOnSphere, PowerLawOnEllipsoid>},
+      {"coupled_diffusion", run_problem<CoupledOnSphere>},
+      {"willmore", run_problem<WillmoreOnTorus, WillmoreOnEllipsoid>},
+      {"cahn_hilliard", run_problem<CahnHilliardOnEllipsoid>}};
   const auto found = runs.find(run.flow.flow);
   if (found == runs.end()) throw std::logic_error("there is no problem for the flow " + run.flow.flow);
   found->second(run, row);

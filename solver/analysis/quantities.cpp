@@ -17,10 +17,12 @@ Field Quantities::columns(const Field& x, NodalFields fields) {
       if (quantity.name == name) return true;
     return false;
   };
-  if ((is_wanted("nu") || is_wanted("H")) && !(find(fields, "nu") && find(fields, "H"))) {
+  const bool has_nu = find(fields, "nu"), has_both = has_nu && find(fields, "H");
+  if ((is_wanted("nu") && !has_nu) || (is_wanted("H") && !has_both)) {
     if (!curvature_) curvature_ = std::make_unique<DiscreteCurvature>(space_);
     curvature_->compute(x);
-    fields.insert(fields.begin(), {{"nu", curvature_->nu()}, {"H", curvature_->H()}});
+    if (!has_both) fields.insert(fields.begin(), {"H", curvature_->H()});
+    if (!has_nu) fields.insert(fields.begin(), {"nu", curvature_->nu()});
   }
   int count = 0;
   for (const ExactEvolution::Quantity& quantity : quantities_) count += quantity.components;

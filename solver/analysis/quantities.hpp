@@ -18,9 +18,9 @@ class Quantities {
   /// The space must outlive this.
   Quantities(const SurfaceSpace& space, std::vector<ExactEvolution::Quantity> quantities);
 
-  /// Their values side by side, N x all components: of nodal_fields, or of State::fields. nu and H are those
-  /// of the discrete surface, unless the flow has both. Throws InputError when there is no field of a
-  /// quantity's name and size.
+  /// Their values side by side, N x all components: of nodal_fields, or of State::fields. nu is that of
+  /// the discrete surface where the flow has none, and H where it does not evolve both (that of BGN's scheme
+  /// is a mean over the step). Throws InputError when there is no field of a quantity's name and size.
   template <class State>
   Field of(const State& state) {
     NodalFields fields = nodal_fields(state);

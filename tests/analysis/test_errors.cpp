@@ -223,5 +223,24 @@ TEST(Diagnostics, OfASphereAreItsClosedForms) {
   EXPECT_GT(series.at("worst_angle")[0], 50);
 }
 
+struct StateWithNormal {
+  double t = 0;
+  Field x, nu;
+  static constexpr NamedField<StateWithNormal> fields[] = {{"x", &StateWithNormal::x}};
+};
+NodalFields nodal_fields(const StateWithNormal& state) {
+  return {{"nu", state.nu}};
+}
+
+// A flow may evolve nu without H, as the generalised mean curvature flow does.
+TEST(Quantities, NuIsTheFlowsOwnWhereItHasOne) {
+  const Mesh mesh = icosphere(1, 2);
+  const SurfaceSpace space(mesh);
+  Quantities quantities(space, {{"nu", 3}, {"H", 1}});
+  const Field columns = quantities.of(StateWithNormal{0, mesh.nodes, 0.5 * mesh.nodes});
+  EXPECT_EQ(columns.leftCols(3), 0.5 * mesh.nodes);
+  EXPECT_NEAR(columns.col(3).mean(), 2, 0.1) << "H of the surface";
+}
+
 }  // namespace
 }  // namespace esfem::test_errors
