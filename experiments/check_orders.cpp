@@ -105,6 +105,7 @@ nlohmann::json to_json(const Claim& claim, const Verdict& verdict) {
                          {"figures", claim.figures},
                          {"reason", verdict.reason},
                          {"remark", claim.remark}};
+  if (!claim.quote.empty()) json["source"]["quote"] = claim.quote;
   if (!claim.family.empty()) json["family"] = claim.family;
   if (!claim.norm.empty()) json["norm"] = claim.norm;
   if (!claim.variable.empty()) json["variable"] = claim.variable;

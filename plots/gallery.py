@@ -11,7 +11,7 @@ import re
 import sys
 
 from report_content import PAPERS
-from report_data import counts, place, read_results
+from report_data import COUNTED_BASES, counts, place, read_results
 from report_html import small_png
 from table import TableError
 
@@ -27,11 +27,11 @@ def headline(results):
     rows = []
     for key, name in [(paper.key, f"{paper.name} ({paper.key})") for paper in PAPERS] + [("beyond", "beyond the papers")]:
         statements = [statement for (section, _), group in placed.items() if section == key for statement in group]
-        published, others = counts(statements)
-        hold, number = (sum(pair[i] for pair in others.values()) for i in (0, 1))
-        rows.append([name, *(str(published[column] or "–") for column in COLUMNS), f"{hold} of {number}" if number else "–",
-                     str(sum(len(statement.claims) for statement in statements))])
-    heads = ["statements of", *COLUMNS, "own findings and independent values met", "checks"]
+        published, others, checks = counts(statements)
+        pairs = [others.get(basis, (0, 0)) for basis in COUNTED_BASES]
+        rows.append([name, *(str(published[column] or "–") for column in COLUMNS),
+                     *(f"{hold} of {number}" if number else "–" for hold, number in pairs), str(checks)])
+    heads = ["statements of", *COLUMNS, *COUNTED_BASES.values(), "checks"]
     kept = [i for i in range(len(heads)) if heads[i] != "claim not met" or any(row[i] != "–" for row in rows)]
     lines = [[line[i] for i in kept] for line in [heads, ["---"] * len(heads), *rows]]
     return markdown(lines)

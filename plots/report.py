@@ -12,7 +12,7 @@ import os
 import sys
 
 from report_content import BEYOND, PAPERS
-from report_data import BEYOND_STEMS, SEVERITY, Statement, counts, place, read_results, verdict
+from report_data import BEYOND_STEMS, COUNTED_BASES, SEVERITY, Statement, counts, place, read_results, verdict
 from report_export import exports
 from report_html import number, picture, table, tag, text
 from report_tables import fits_table, provenance_table, runs_table
@@ -33,7 +33,9 @@ def claim_rows(statement):
     rows, before = [], None
     for i, claim in enumerate(statement.claims):
         first = i == 0
-        words = text(statement.first["statement"]) + tag("div", text(statement.source["place"]), class_="place")
+        quote = statement.source.get("quote", "")
+        place_of = text(statement.source["place"]) + (f": “{text(quote)}”" if quote else "")
+        words = text(statement.first["statement"]) + tag("div", place_of, class_="place")
         same_remark = not first and claim["remark"] == statement.claims[i - 1]["remark"]
         remark = "" if same_remark or not claim["remark"] else tag("span", text(claim["remark"]), class_="remark")
         reason = tag("span", text(claim["reason"]), class_="remark") if claim["reason"] else ""
@@ -167,14 +169,13 @@ def counts_table(placed):
     rows = []
     for section, title in titles.items():
         statements = [statement for (where, _), group in placed.items() if where == section for statement in group]
-        published, others = counts(statements)
+        published, others, checks = counts(statements)
         cells = [str(published[name]) if published[name] else "" for name in PUBLISHED]
-        for basis in ("independent", "finding"):
+        for basis in COUNTED_BASES:
             hold, all_of_them = others.get(basis, (0, 0))
             cells.append(f"{hold} of {all_of_them}" if all_of_them else "")
-        rows.append([f'<a href="#{section}">{text(title)}</a>', *cells, str(sum(len(s.claims) for s in statements))])
-    return table(["", *(badge(name) for name in PUBLISHED), "independent values met", "own findings met", "checks"], rows,
-                 "counts")
+        rows.append([f'<a href="#{section}">{text(title)}</a>', *cells, str(checks)])
+    return table(["statements", *(badge(name) for name in PUBLISHED), *COUNTED_BASES.values(), "checks"], rows, "counts")
 
 
 def exceptions_table(results):

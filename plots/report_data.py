@@ -11,6 +11,9 @@ from table import SCHEMA, TableError
 VERDICT_SCHEMA = "esfem-verdicts/1"
 # In the order of lists.
 SEVERITY = ("claim not met", "not reproduced", "corrected", "reproduced, but", "reproduced", "holds")
+HOLDING = ("reproduced, but", "reproduced", "holds")
+# What is counted beside the papers' statements, with the heads of the columns.
+COUNTED_BASES = {"theory": "theorems and identities hold", "independent": "independent values met", "finding": "own findings met"}
 BEYOND_STEMS = tuple(figure.stem for figure in BEYOND)
 PAPER_KEYS = tuple(paper.key for paper in PAPERS)
 
@@ -65,7 +68,7 @@ class Results:
 
 
 def verdict(claim):
-    """In the words of the report. Findings and independent values, which no paper states, hold or do not."""
+    """In the words of the report. What no paper states (findings, independent and own values) holds or does not."""
     if not claim["met"]:
         return "claim not met"
     if claim["finding"]:
@@ -143,11 +146,13 @@ def _check_figures(statement, paper, known):
 
 
 def counts(statements):
-    """{verdict: number of statements}, for published ones; and for the others {basis: (that hold, all)}."""
-    published = {name: sum(s.verdict == name for s in statements if s.is_published) for name in SEVERITY}
-    others = {}
+    """{verdict: number}, of the papers' statements; {basis: (that hold, all)}, of theory, independent values and findings;
+    and the number of their checks. The program's own numbers, of basis regression, are not counted."""
+    of_basis = {}
     for statement in statements:
-        if not statement.is_published:
-            hold, number = others.get(statement.source["basis"], (0, 0))
-            others[statement.source["basis"]] = (hold + (statement.verdict != "claim not met"), number + 1)
-    return published, others
+        of_basis.setdefault(statement.source["basis"], []).append(statement)
+    published = {name: sum(s.verdict == name for s in of_basis.get("statement", [])) for name in SEVERITY}
+    others = {basis: (sum(s.verdict in HOLDING for s in of_basis[basis]), len(of_basis[basis]))
+              for basis in COUNTED_BASES if basis in of_basis}
+    checks = sum(len(s.claims) for basis in ("statement", *others) for s in of_basis.get(basis, []))
+    return published, others, checks

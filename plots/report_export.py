@@ -6,7 +6,7 @@ import io
 from report_data import verdict
 from table import label_text
 
-CLAIM_COLUMNS = ("experiment", "claim", "paper", "place", "basis", "statement", "verdict", "quantity", "norm", "variable",
+CLAIM_COLUMNS = ("experiment", "claim", "paper", "place", "basis", "quote", "statement", "verdict", "quantity", "norm", "variable",
                  "labels", "expected", "measured", "rows")
 ORDER_COLUMNS = ("experiment", "labels", "quantity", "norm", "variable", "order", "from", "to", "rows")
 PRINTED_CLAIM_COLUMNS = ("place", "statement", "verdict", "expected", "measured")
@@ -22,7 +22,7 @@ def claims(results):
     for statement in results.statements:
         source = statement.source
         for claim in statement.claims:
-            rows.append((statement.stem, claim["id"], source["paper"], source["place"], source["basis"], claim["statement"],
+            rows.append((statement.stem, claim["id"], source["paper"], source["place"], source["basis"], source.get("quote", ""), claim["statement"],
                          verdict(claim), claim["quantity"], claim.get("norm", ""), claim.get("variable", ""),
                          label_text(claim["where"]), claim["expected"], claim["measured"], claim["rows_used"]))
     return rows

@@ -24,7 +24,8 @@ from testing import FOLDER, synthetic_table
 
 def claim(name, basis="statement", where="§13.1, Fig. 13.1", paper="kll19", **changes):
     """A verdict as check_orders writes it."""
-    made = {"id": name, "statement": f"statement of {name}", "source": {"paper": paper, "place": where, "basis": basis},
+    source = {"paper": paper, "place": where, "basis": basis} | ({"quote": "words of the paper"} if basis == "statement" else {})
+    made = {"id": name, "statement": f"statement of {name}", "source": source,
             "kind": "order", "quantity": "x", "norm": "nodal_H1", "variable": "tau", "met": True, "finding": "",
             "measured": "2.95 [2.79, 3.11]", "expected": ">= 2.5", "rows_used": 30, "where": {"flow": "mean_curvature"}, "figures": ["13.1"] if "13.1" in where else [],
             "reason": "", "remark": ""}
@@ -215,14 +216,15 @@ class Report(unittest.TestCase):
         self.assertEqual(table.splitlines()[2:], ["| `dziuk` |  | of nodes |", "| `coupled` | `tumour` | two kinds |"])
 
     def test_headline(self):
-        self.page(claim("a"), claim("b", finding="not reproduced"), claim("c", "finding", "own", "esfem"))
+        self.page(claim("a"), claim("b", finding="not reproduced"), claim("c", "finding", "own", "esfem"), claim("d", "theory"),
+                  claim("e", "theory", met=False), claim("f", "regression", "own", "esfem"))
         table = gallery.headline(self.results)
-        self.assertIn("| Mean curvature flow (kll19) | 1 | – | – | 1 | 1 of 1 | 3 |", table)
+        self.assertIn("| Mean curvature flow (kll19) | 1 | – | – | 1 | 1 of 2 | – | 1 of 1 | 5 |", table)
         self.assertNotIn("claim not met", table)
         mark = "<!-- headline: written by make gallery -->"
-        readme = f"before\n{mark}\nold\n<!-- end of headline -->\nafter"
+        readme = f"before\n{mark}\nstale\n<!-- end of headline -->\nafter"
         new = gallery.with_table(readme, "headline", table)
-        self.assertTrue(new.startswith("before\n") and new.endswith("\nafter") and "old" not in new)
+        self.assertTrue(new.startswith("before\n") and new.endswith("\nafter") and "stale" not in new)
         self.assertEqual(gallery.with_table(new, "headline", table), new)
         for broken in ("no marks", readme + mark):
             with self.assertRaises(TableError):

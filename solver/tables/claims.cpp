@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <sstream>
 
 #include "solver/error.hpp"
 #include "solver/tables/claim_families.hpp"
@@ -85,15 +87,31 @@ void read_finding(const JsonReader& reader, Claim& claim) {
     throw InputError(reader.where() + ": finding '" + claim.finding + "' needs a 'remark' that says why");
 }
 
+constexpr int longest_quote = 15;
+
+int word_count(const std::string& text) {
+  std::istringstream words(text);
+  return static_cast<int>(
+      std::distance(std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()));
+}
+
 void read_source(const JsonReader& reader, Claim& claim) {
-  static const std::set<std::string> known = {"statement", "theory", "independent", "finding"};
-  reader.accept_only({"paper", "place", "basis"});
+  static const std::set<std::string> known = {"statement", "theory", "independent", "finding", "regression"};
+  reader.accept_only({"paper", "place", "basis", "quote"});
   claim.paper = reader.text("paper");
   claim.place = reader.text("place");
   claim.basis = reader.text("basis");
   if (known.count(claim.basis) == 0)
     throw InputError(reader.where() + ": basis '" + claim.basis +
-                     "': expected statement, theory, independent or finding");
+                     "': expected statement, theory, independent, finding or regression");
+  if (reader.has("quote") != (claim.basis == "statement"))
+    throw InputError(reader.where() +
+                     ": expected 'quote', the paper's own words, of a statement and of nothing else");
+  if (claim.basis != "statement") return;
+  claim.quote = reader.text("quote");
+  if (const int words = word_count(claim.quote); words == 0 || words > longest_quote)
+    throw InputError(reader.where() +
+                     format(", quote: found %d words, expected 1 to %d", words, longest_quote));
 }
 
 Claim claim_from_json(const Json& json, const std::string& place) {

@@ -24,8 +24,10 @@ struct Claim {
   std::string family;        ///< the id of the family that it is a member of; "": none
   std::string paper, place;  ///< source, e.g. "kll19", "§13.1, Fig. 13.1"
   /// What it rests on: "statement" (a sentence or figure of the paper), "theory" (a theorem or an identity),
-  /// "independent" (another implementation), "finding" (this project's own).
+  /// "independent" (another implementation), "finding" (this project's own), "regression" (the program's own
+  /// number, which is to stay what it is).
   std::string basis;
+  std::string quote;           ///< statement: the paper's own words
   std::string quantity, norm;  ///< keys of Row::errors; value: quantity is a key of Row::values
   std::string variable;        ///< order: "h" | "tau"
   double expected = 0;         ///< order
@@ -46,12 +48,12 @@ struct Claim {
 };
 
 /// Contents of reference/<stem>.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
-/// {"paper", "place", "basis"}, "kind": "order" | "size" | "value", "quantity", "norm" (not of a value),
-/// "where": {"flow": "dziuk", "bdf": 4}, "rows": {"tau", "tau_min", "tau_max", "h", "h_min", "h_max",
-/// "from_step"}, "presets": [..], "figures": ["13.1"], ...}]}; order: "variable", "expected", "tolerance",
-/// and "at_most" if wanted; size and value: "at_most" and/or "at_least". "where" selects rows by their
-/// labels, rows.tau and rows.h one value. A claim may have "finding" and "remark".
-/// An entry with "for" is a family (claim_families.hpp). "defaults" beside "claims" has keys for all of them;
+/// {"paper", "place", "basis", "quote" (of a statement)}, "kind": "order" | "size" | "value", "quantity",
+/// "norm" (not of a value), "where": {"flow": "dziuk", "bdf": 4}, "rows": {"tau", "tau_min", "tau_max", "h",
+/// "h_min", "h_max", "from_step"}, "presets": [..], "figures": ["13.1"], ...}]}; order: "variable",
+/// "expected", "tolerance", and "at_most" if wanted; size and value: "at_most" and/or "at_least". "where"
+/// selects rows by their labels, rows.tau and rows.h one value. A claim may have "finding" and "remark". An
+/// entry with "for" is a family (claim_families.hpp). "defaults" beside "claims" has keys for all of them;
 /// those of a claim come first.
 struct Reference {
   std::string experiment, paper;

@@ -41,7 +41,11 @@ Table sample_table() {
 json order_claim() {
   return {{"id", "x-order-tau"},
           {"statement", "x converges with order 3 in tau"},
-          {"source", {{"paper", "kll19"}, {"place", "§13.1, Fig. 13.1"}, {"basis", "statement"}}},
+          {"source",
+           {{"paper", "kll19"},
+            {"place", "§13.1, Fig. 13.1"},
+            {"basis", "statement"},
+            {"quote", "as in the paper"}}},
           {"kind", "order"},
           {"quantity", "x"},
           {"norm", "nodal_H1"},
@@ -274,6 +278,17 @@ TEST(Claims, ReadingNamesClaimAndKey) {
               HasSubstr("'basis' is missing"));
   EXPECT_THAT(with(order_claim(), {{"source", {{"paper", "kll19"}, {"place", "§1"}, {"basis", "hearsay"}}}}),
               AllOf(HasSubstr("source"), HasSubstr("'hearsay'"), HasSubstr("statement, theory")));
+  const auto with_source = [](const json& changes) {
+    json claim = order_claim();
+    claim["source"].merge_patch(changes);
+    return reading(reference({claim}));
+  };
+  EXPECT_THAT(with_source({{"quote", nullptr}}), HasSubstr("'quote', the paper's own words"));
+  EXPECT_THAT(with_source({{"basis", "theory"}}), HasSubstr("of a statement and of nothing else"));
+  EXPECT_THAT(with_source({{"quote", " "}}), HasSubstr("found 0 words"));
+  EXPECT_THAT(with_source({{"quote", "1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16"}}),
+              HasSubstr("found 16 words"));
+  EXPECT_EQ(with_source({{"basis", "regression"}, {"quote", nullptr}}), "no error");
   EXPECT_THAT(with(order_claim(), {{"kind", "slope"}}), HasSubstr("expected order, size or value"));
   EXPECT_THAT(with(order_claim(), {{"variable", "t"}}), HasSubstr("expected h or tau"));
   EXPECT_THAT(with(order_claim(), {{"tolerance", "some"}}), HasSubstr("a number"));
@@ -301,6 +316,7 @@ TEST(Claims, HaveTheDefaultsOfTheFile) {
   file["defaults"] = {{"figures", json::array({"13.1"})},
                       {"source", {{"basis", "theory"}, {"paper", "nick18"}}}};
   file["claims"][1]["source"].erase("basis");
+  file["claims"][1]["source"].erase("quote");
   file["claims"][1]["figures"] = json::array();
   const std::vector<Claim> claims = reference_from_json(file, "r.json").claims;
   EXPECT_EQ(claims[0].figures, std::vector<std::string>{"13.1"});
