@@ -112,7 +112,7 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
   const Setting& setting = settings.at(choice["setting"]);
   WillmoreFlow::Variant variant;
   variant.law = surface_diffusion_law();
-  variant.project = setting.project;
+  variant.projection = setting.project ? WillmoreFlow::Variant::after_steps : WillmoreFlow::Variant::none;
   variant.relaxation = setting.relaxation;
   const WillmoreStart start = willmore_start_on(space, surface, mesh.nodes, variant.law, false);
   WillmoreFlow flow(space, variant, start.theta);

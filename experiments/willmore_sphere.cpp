@@ -109,7 +109,7 @@ void run(const Choice& choice, Row& row, const std::string&) {
 
   // 2. The flow from exact values, with the errors of each step.
   StationaryWillmore setting;
-  setting.variant.project = choice["projection"] == "projected";
+  setting.variant.projection = projection_of(choice["projection"]);
   if (choice["flow"] == "surface_diffusion") setting.variant.law = surface_diffusion_law();
   setting.theta = choice["theta"] == "yes";
   setting.grid = {choice.bdf(), row.tau, row.steps, choice.start()};

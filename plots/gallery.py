@@ -15,7 +15,8 @@ from report_data import COUNTED_BASES, counts, place, read_results
 from report_html import small_png
 from table import TableError
 
-PICTURES = ("kll19/fig13_1", "kll19/fig13_3", "kll21/fig7_5", "gallery/willmore_relaxation", "bk22/fig6", "gallery/all_orders",
+PICTURES = ("kll19/fig13_1", "kll19/fig13_3", "kll21/fig7_5", "gallery/willmore_relaxation", "gallery/willmore_projection",
+            "gallery/willmore_projection_length", "bk22/fig6", "gallery/all_orders",
             "gallery/mcf_angenent_torus", "gallery/mcf_competitors", "gallery/tumour_growth", "pfhub/fig1d")
 WIDTH = 1000  # pixels
 COLUMNS = ("reproduced", "reproduced, but", "corrected", "not reproduced", "claim not met")

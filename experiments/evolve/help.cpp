@@ -5,12 +5,13 @@
 namespace esfem {
 namespace {
 
-/// "ritz" | "interpolation"
+/// "ritz" | "interpolation", or true | false | "coefficients": the default comes first
 std::string values_of(const Key& key) {
-  if (key.kind != Key::word) return key.otherwise.is_null() ? "none" : key.otherwise.dump();
-  std::string words;
-  for (const std::string& word : key.words) words += (words.empty() ? "\"" : " | \"") + word + "\"";
-  return words;
+  std::string values = key.otherwise.is_null() ? "none" : key.otherwise.dump();
+  if (key.kind == Key::truth_or_word) values += key.otherwise == true ? " | false" : " | true";
+  for (const std::string& word : key.words)
+    if (word != key.otherwise) values += " | \"" + word + "\"";
+  return values;
 }
 
 std::string unit_of(int length_power) {

@@ -27,6 +27,10 @@ json schema_of(const Key& key) {
   case Key::word:
     schema["enum"] = key.words;
     break;
+  case Key::truth_or_word:
+    schema["enum"] = {true, false};
+    for (const std::string& word : key.words) schema["enum"].push_back(word);
+    break;
   case Key::seed:
     schema.update({{"type", "integer"}, {"minimum", 0}, {"maximum", 1000000}});
     break;

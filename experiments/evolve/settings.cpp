@@ -36,6 +36,8 @@ json value_of(const JsonReader& reader, const Key& key) {
     return reader.integer_within(key.name, 0, 0, 1000000);
   case Key::word:
     return word(reader, key);
+  case Key::truth_or_word:
+    return reader.is_truth(key.name) ? json(reader.truth_or(key.name, false)) : word(reader, key);
   default:
     return number(reader, key);
   }

@@ -9,7 +9,7 @@ namespace esfem {
 
 /// A key of "variant" or "parameters" of a configuration.
 struct Key {
-  enum Kind { number, positive, not_negative, truth, seed, word } kind;
+  enum Kind { number, positive, not_negative, truth, seed, word, truth_or_word } kind;
   std::string name;
   nlohmann::json otherwise;  ///< its default; null: none
   std::string help;

@@ -9,11 +9,16 @@ namespace {
 
 using Variant = WillmoreFlow::Variant;
 
+Variant::Projection projection_of(const Settings& asked) {
+  if (asked.is("project", "coefficients")) return Variant::in_coefficients;
+  return asked.truth("project") ? Variant::after_steps : Variant::none;
+}
+
 Variant willmore_variant(const Settings& asked, const WillmoreLaw& law) {
   Variant variant;
   variant.law = law;
   variant.F = asked.is("F", "extrapolated") ? Variant::extrapolated : Variant::implicit;
-  variant.project = asked.truth("project");
+  variant.projection = projection_of(asked);
   variant.relaxation = asked.number("relaxation");
   variant.reinitialise = asked.number_or("reinitialise", 0);
   return variant;
@@ -49,8 +54,12 @@ Entry willmore_entry(const WillmoreLaw& law) {
   entry.fields = "nu, H, V, z";
   entry.variant = {
       word("F", {"extrapolated", "implicit"}, "F(x, u) w of (3.5a)"),
-      {Key::truth, "project", true,
-       "nu_h to unit length, z_h to the tangent plane, in the nodes after each step"},
+      {Key::truth_or_word,
+       "project",
+       true,
+       "nu_h to unit length, z_h to the tangent plane, in the nodes: after each step, or in f, g and F alone",
+       0,
+       {"coefficients"}},
       {Key::truth, "theta", nullptr, "the correction (3.7); default: true with a \"surface\", false without"},
       {Key::not_negative, "relaxation", 0,
        "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau"},

@@ -168,7 +168,7 @@ struct CahnHilliardOnEllipsoid {
 
 WillmoreFlow::Variant without_projections() {
   WillmoreFlow::Variant variant;
-  variant.project = false;
+  variant.projection = WillmoreFlow::Variant::none;
   return variant;
 }
 

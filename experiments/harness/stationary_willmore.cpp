@@ -57,6 +57,14 @@ class VelocityErrors {
 
 }  // namespace
 
+WillmoreFlow::Variant::Projection projection_of(const std::string& name) {
+  static const std::map<std::string, WillmoreFlow::Variant::Projection> projections = {
+      {"none", WillmoreFlow::Variant::none},
+      {"projected", WillmoreFlow::Variant::after_steps},
+      {"coefficients", WillmoreFlow::Variant::in_coefficients}};
+  return projections.at(name);
+}
+
 void run_stationary_willmore(const SurfaceSpace& space, const Mesh& mesh, const ExactEvolution& exact,
                              const StationaryWillmore& setting, double exact_energy,
                              const WillmoreObserver& observe, Row& row) {

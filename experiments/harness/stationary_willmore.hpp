@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/mesh.hpp"
@@ -11,6 +12,9 @@
 #include "solver/time/integrate.hpp"
 
 namespace esfem {
+
+/// What --projection of the experiments says: none | projected | coefficients. Throws std::out_of_range.
+WillmoreFlow::Variant::Projection projection_of(const std::string& name);
 
 /// How a stationary surface is held still by the discrete flow.
 struct StationaryWillmore {

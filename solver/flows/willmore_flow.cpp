@@ -32,12 +32,13 @@ Field interpolated_velocity(const Field& u, const Field& w) {
   return w.col(0).asDiagonal() * u.rightCols(3);
 }
 
-/// nu_h to unit length and z_h to the plane normal to it, node by node (§7.1).
-void project(Field& u, Field& w) {
+/// nu_h to unit length and z_h to the plane normal to it, node by node (§7.1); u and w are N x 4.
+template <class Fields>
+void project(Fields&& u, Fields&& w) {
   for (int j = 0; j < u.rows(); ++j) {
-    const Vec3 nu = u.row(j).tail<3>().normalized(), z = w.row(j).tail<3>();
-    u.row(j).tail<3>() = nu;
-    w.row(j).tail<3>() = z - z.dot(nu) * nu;
+    const Vec3 nu = u.row(j).template tail<3>().normalized(), z = w.row(j).template tail<3>();
+    u.row(j).template tail<3>() = nu;
+    w.row(j).template tail<3>() = z - z.dot(nu) * nu;
   }
 }
 
@@ -137,6 +138,8 @@ void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
   step.extrapolate(&State::w, tilde_.w);
   u_w_tilde_.resize(x_tilde_.rows(), 8);
   u_w_tilde_ << tilde_.u, tilde_.w;
+  if (variant_.projection == Variant::in_coefficients)
+    project(u_w_tilde_.leftCols(4), u_w_tilde_.rightCols(4));
 
   // f(x~, u~) (+ F(x~, u~) w~) and g(x~, u~)
   assemble_regular(space_, x_tilde_, M_, A_);
@@ -155,7 +158,7 @@ void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
                      next.w);
   else
     lagged_.solve(delta_0 / tau, x_tilde_, M_, A_, tilde_, next.u, next.w);
-  if (variant_.project) project(next.u, next.w);
+  if (variant_.projection == Variant::after_steps) project(next.u, next.w);
 
   // (3.4): v = V nu, delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
   next.v = interpolated_velocity(next.u, next.w);

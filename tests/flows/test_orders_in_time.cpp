@@ -50,35 +50,40 @@ TEST(DziukFlowInTime, VelocityHasTheOrderOfTheBdf) {
   for (int q : {1, 2, 3, 4, 5}) EXPECT_GE(dziuk_solution().order(q, 256), q - tolerance) << "BDF" << q;
 }
 
-SemiDiscreteSolution<WillmoreFlow>& willmore_solution(bool project) {
+SemiDiscreteSolution<WillmoreFlow>& willmore_solution(WillmoreFlow::Variant::Projection projection) {
   using State = WillmoreFlow::State;
+  using Variant = WillmoreFlow::Variant;
   // What interpolation of the exact initial values leaves in the fast modes dies out within 0.1 time units;
   // within that layer no method shows its order.
-  const auto make = [](bool project) {
+  const auto make = [](Variant::Projection projection) {
     WillmoreFlow::Variant variant;
-    variant.project = project;
+    variant.projection = projection;
     const WillmoreStart start =
         willmore_start_on(space(), flattened_sphere(), flattened_sphere_mesh().nodes, variant.law, false);
     WillmoreFlow flow(space(), variant);
     const State behind_the_layer = last_state(flow, {2, 2e-4, 500, parse_start("substeps:16")}, start.state);
     return SemiDiscreteSolution<WillmoreFlow>(space(), behind_the_layer, variant);
   };
-  static SemiDiscreteSolution<WillmoreFlow> without = make(false), with = make(true);
-  return project ? with : without;
+  static SemiDiscreteSolution<WillmoreFlow> solutions[] = {
+      make(Variant::none), make(Variant::in_coefficients), make(Variant::after_steps)};
+  return solutions[projection];
 }
 
-// The experiment willmore_time_orders has all orders and fields.
+// The experiment willmore_projection has all orders and fields.
 TEST(WillmoreFlowInTime, PositionsAndCurvatureHaveTheOrderOfTheBdf) {
   using State = WillmoreFlow::State;
   const double tolerance = 0.25;
   for (int q : {2, 3})
     for (Field State::*field : {&State::x, &State::u})
-      EXPECT_GE(willmore_solution(false).order(q, 64, {}, field), q - tolerance) << "BDF" << q;
+      for (const auto projection : {WillmoreFlow::Variant::none, WillmoreFlow::Variant::in_coefficients})
+        EXPECT_GE(willmore_solution(projection).order(q, 64, {}, field), q - tolerance) << "BDF" << q;
 }
 
 TEST(WillmoreFlowInTime, ProjectionAfterEachStepSpoilsTheOrder) {
   using State = WillmoreFlow::State;
-  for (int q : {2, 3}) EXPECT_LT(willmore_solution(true).order(q, 64, {}, &State::u), 1) << "BDF" << q;
+  for (int q : {2, 3})
+    EXPECT_LT(willmore_solution(WillmoreFlow::Variant::after_steps).order(q, 64, {}, &State::u), 1)
+        << "BDF" << q;
 }
 
 }  // namespace

@@ -109,9 +109,9 @@ struct WillmoreRun {
 TEST(WillmoreFlow, ExtrapolatedCouplingAgreesWithTheIndependentImplementation) {
   const WillmoreRun run("willmore_bdf1_extrapolated");
   Variant variant;
-  variant.project = false;
+  variant.projection = Variant::none;
   EXPECT_LT(run.deviation(run.end(variant)), 1e-8);
-  variant.project = true;
+  variant.projection = Variant::after_steps;
   EXPECT_GT(run.deviation(run.end(variant)), 1e-4);
 }
 
@@ -171,7 +171,7 @@ TEST(WillmoreFlow, TheSphereWithoutThetaMoves) {
 
 TEST(WillmoreFlow, WithoutProjectionRoundOffGrows) {
   Variant variant;
-  variant.project = false;
+  variant.projection = Variant::none;
   const StationarySphere unit(1, 2);
   // exp(8 t) makes 1e-10 of round-off at t = 1 from 1e-13 of the start: still stationary to 1e-9, but not for
   // long.

@@ -67,9 +67,9 @@ TEST(Registry, EveryKeyIsReadAndCheckedWhereItBelongs) {
         bad[object] = {{key.name, json::array()}};
         EXPECT_THAT(refusal(bad), HasSubstr(key.name)) << bad;
         json good = flow;
-        good[object] = {{key.name, key.kind == Key::truth  ? json(true)
-                                   : key.kind == Key::word ? json(key.words.back())
-                                                           : json(1)}};
+        good[object] = {{key.name, key.kind == Key::truth ? json(true)
+                                   : !key.words.empty()   ? json(key.words.back())
+                                                          : json(1)}};
         EXPECT_EQ(refusal(good), "") << good;
         if (key.kind != Key::positive && key.kind != Key::not_negative) continue;
         good[object][key.name] = -1;
