@@ -139,7 +139,7 @@ nlohmann::json parameters() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("all_orders", "esfem");
+  Experiment experiment("all_orders", "esfem", run, otherwise, preset);
   experiment.help =
       "The orders in h and tau of each flow for polynomial degrees 1 to 4 and BDF 1 to 5. Orders in h come "
       "from errors against\nexact solutions on three meshes (levels 0, 1, 2), orders in tau from errors "
@@ -150,14 +150,11 @@ int main(int argc, char** argv) {
   experiment.grid.axes = {{"flow", known_flows(), "as in evolve"},
                           {"run", {"space", "time"}, "space: orders in h | time: orders in tau"}};
   experiment.grid.labels = {"flow", "degree", "bdf", "run"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   const std::string why = "meshes, starting values and quadrature are those of the problems";
   experiment.grid.refused = {{"mesh", why}, {"start", why}, {"quadrature", why}};
   experiment.grid.admits = belongs_to_an_order;
   experiment.steps = steps;
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = parameters();
   return run_experiment(experiment, argc, argv);
 }

@@ -189,7 +189,10 @@ double cost(const Choice& choice) {
 
 int main(int argc, char** argv) {
   MovingMeshes meshes;
-  Experiment experiment("cahn_hilliard_ellipsoid", "bk22");
+  const auto run_on_meshes = [&](const Choice& choice, Row& row, const std::string&) {
+    run(choice, row, meshes);
+  };
+  Experiment experiment("cahn_hilliard_ellipsoid", "bk22", run_on_meshes, otherwise, preset);
   experiment.help =
       "The Cahn-Hilliard equation on an evolving ellipsoid (bk22 Figures 2 to 5): errors of u and w over "
       "step size and mesh\n"
@@ -203,12 +206,9 @@ int main(int argc, char** argv) {
        "ritz_theta: Ritz maps and theta | interpolation: interpolated u, no theta | order: errors against "
        "small steps | derivative: errors of d•u | printed: (8.3) without tau before its load"}};
   experiment.grid.labels = {"run", "bdf", "degree"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.grid.admits = finds_starting_values;
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
-  experiment.run = [&](const Choice& choice, Row& row, const std::string&) { run(choice, row, meshes); };
   experiment.parameters = {
       {"end_time", time_steps.end_time},
       {"epsilon", epsilon},

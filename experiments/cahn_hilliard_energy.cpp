@@ -162,7 +162,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("cahn_hilliard_energy", "bk22");
+  Experiment experiment("cahn_hilliard_energy", "bk22", run, otherwise, preset);
   experiment.help =
       "Ginzburg-Landau energy of the Cahn-Hilliard equation, epsilon = 0.1, on the ellipsoid with a(t) = 1 + "
       "0.25 sin(10 pi t)\n"
@@ -172,11 +172,8 @@ int main(int argc, char** argv) {
       "Example: cahn_hilliard_energy --levels 4 --bdf 3 --end_time 0.2 --output energy.json";
   experiment.grid.axes = {{"end_time", {}, "t at the end of each run"}};
   experiment.grid.labels = {"bdf"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.steps = steps;
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"epsilon", epsilon},
                            {"amplitude", moving_ellipsoid.amplitude},
                            {"period", moving_ellipsoid.period},

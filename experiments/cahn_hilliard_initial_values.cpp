@@ -194,7 +194,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("cahn_hilliard_initial_values", "bk22");
+  Experiment experiment("cahn_hilliard_initial_values", "bk22", run, otherwise, preset);
   experiment.help =
       "The Cahn-Hilliard equation on an evolving ellipsoid from interpolated initial values and from their "
       "Ritz maps with the\n"
@@ -210,11 +210,8 @@ int main(int argc, char** argv) {
       {"constant", {"unit", "printed"}, "of the initial u: unit: max |u| = 1 | printed: 225/56693"},
       {"epsilon", {}, "of the equation"}};
   experiment.grid.labels = {"initial", "constant"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"end_time", time_steps.end_time},
                            {"radius", initial_radius},
                            {"amplitude", moving_ellipsoid.amplitude},

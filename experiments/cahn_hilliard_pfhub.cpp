@@ -161,7 +161,7 @@ bool has_adaptive_order(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("cahn_hilliard_pfhub", "pfhub");
+  Experiment experiment("cahn_hilliard_pfhub", "pfhub", run, otherwise, preset);
   experiment.help =
       "Spinodal decomposition on a sphere (PFHub benchmark 1d): energies over time until the state is "
       "steady, and snapshots of\n"
@@ -176,8 +176,6 @@ int main(int argc, char** argv) {
       {"tolerance", {}, "of adaptive steps; moose: of c in Newton's method"},
       {"end_time", {}, "of adaptive steps"}};
   experiment.grid.labels = {"stepping", "degree", "bdf", "tolerance"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.grid.implied = implied;
   experiment.grid.refused = {{"mesh", "the meshes are those of the sphere; expected --levels"},
                              {"start", "the steps start with backward Euler by themselves; expected --bdf"},
@@ -187,7 +185,6 @@ int main(int argc, char** argv) {
     return HalvedSteps{0, is_adaptive(choice) ? first_step : moose_times()[1]};
   };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"radius", PfhubSphere::radius},
                            {"kappa", PfhubSphere::kappa},
                            {"mobility", PfhubSphere::mobility},

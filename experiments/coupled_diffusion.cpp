@@ -171,7 +171,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("coupled_diffusion", "nick18");
+  Experiment experiment("coupled_diffusion", "nick18", run, otherwise, preset);
   experiment.help =
       "A growing sphere whose velocity is coupled to diffusion on it (nick18 Figures 1 to 5): errors of "
       "position x, velocity v and\nu at t = 1 over step size and mesh width. Step sizes 0.1 2^-k, k = 0, 1, "
@@ -186,11 +186,8 @@ int main(int argc, char** argv) {
        "extrapolation: as (2.18) prints it | difference: (7.2) minus (2.19) | cost: run time of (7.2) | "
        "growth: of an error in u | dynamic: dynamic velocity law | order: errors against small steps"}};
   experiment.grid.labels = {"run", "bdf"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {
       {"end_time", time_steps.end_time}, {"alpha", 1}, {"beta", 1}, {"errors", "at the end time"}};
   experiment.meshes = "generated, edge length 0.378 2^(-level/2)";

@@ -139,7 +139,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("mcf_angenent_torus", "esfem");
+  Experiment experiment("mcf_angenent_torus", "esfem", run, otherwise, preset);
   experiment.help =
       "Mean curvature flow of the self-shrinking torus of Angenent on [0, 0.2]: errors of position x,\n"
       "velocity v, normal nu and mean curvature H over step size and mesh width. Step sizes 0.02 2^-k,\n"
@@ -153,11 +153,8 @@ int main(int argc, char** argv) {
       {"flow", {"mean_curvature", "dziuk"}, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6)"},
       {"triangulation", {"grid", "unstructured"}, "grid: uniform in arclength and angle | unstructured"}};
   experiment.grid.labels = {"run", "flow", "triangulation", "degree", "bdf"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.steps = [](const Choice& choice) { return choice["run"] == "order" ? order_steps : time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"end_time", time_steps.end_time}};
   experiment.meshes =
       "grid: 2n x n cells, n = 12, 18, 24, 36, 48; unstructured: edges 0.33 to 0.66 times 2^(-level/2)";

@@ -127,7 +127,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("mcf_competitors", "esfem");
+  Experiment experiment("mcf_competitors", "esfem", run, otherwise, preset);
   experiment.help =
       "Mean curvature flow of the sphere of radius 2 on [0, 0.6] and the self-shrinking torus on [0, 0.2]\n"
       "by three schemes: errors, distance of the nodes from the exact surface, and seconds of the steps.\n"
@@ -140,8 +140,6 @@ int main(int argc, char** argv) {
        {"mean_curvature", "dziuk", "bgn"},
        "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6) | bgn: Barrett, Garcke, Nürnberg 2008, of order 1"}};
   experiment.grid.labels = {"surface", "flow", "degree", "bdf"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.grid.implied = [](const Choice& choice) {
     return choice["flow"] == "bgn" ? Block{{"bdf", 1}} : Block();  // a scheme of first order
   };
@@ -149,7 +147,6 @@ int main(int argc, char** argv) {
   experiment.grid.refused = {{"mesh", why}, {"start", why}};
   experiment.steps = [](const Choice& choice) { return case_of(choice).time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"start", "exact"},
                            {"end_time", {{"sphere", 0.6}, {"angenent_torus", 0.2}}},
                            {"largest_tau", {{"sphere", 0.05}, {"angenent_torus", 0.02}}}};

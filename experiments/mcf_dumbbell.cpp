@@ -171,7 +171,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("mcf_dumbbell", "kll19");
+  Experiment experiment("mcf_dumbbell", "kll19", run, otherwise, preset);
   experiment.help =
       "Mean curvature flow of a dumbbell up to its pinch singularity at t = 0.082233 by several methods\n"
       "(kll19 Figures 13.3 to 13.6): time series, snapshots and the pinch time of each. Step sizes\n"
@@ -188,12 +188,9 @@ int main(int argc, char** argv) {
        {"plain", "normalised", "interpolated", "alpha1", "alpha10", "alpha100"},
        "of (5.1): nu_h normalised | v_h by interpolation | stabilising term of §14, alpha = 1, 10, 100"}};
   experiment.grid.labels = {"flow", "variant", "degree", "start"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.grid.implied = implied;
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"end_time", time_steps.end_time}, {"largest_tau", time_steps.largest}};
   experiment.meshes = "generated, level 0: edge length (0.2^-2 + |A|²)^(-1/2), level 1: 0.0902";
   return run_experiment(experiment, argc, argv);

@@ -154,7 +154,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("mcf_sphere", "kll19");
+  Experiment experiment("mcf_sphere", "kll19", run, otherwise, preset);
   experiment.help =
       "Mean curvature flow of the sphere of radius 2 on [0, 0.6]: errors of position x, velocity v, normal\n"
       "nu and mean curvature H over step size and mesh width (kll19 Figures 13.1, 13.2). Step sizes\n"
@@ -168,11 +168,8 @@ int main(int argc, char** argv) {
        "relative to Dziuk's scheme"},
       {"flow", {"mean_curvature", "dziuk"}, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6)"}};
   experiment.grid.labels = {"run", "flow", "bdf", "start"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"initial_radius", initial_radius}, {"end_time", time_steps.end_time}};
   experiment.meshes = "generated, edge length 0.5 2^(-level/2)";
   experiment.fit_range.tau_max = 0.05;

@@ -142,7 +142,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("surface_diffusion", "kll21");
+  Experiment experiment("surface_diffusion", "kll21", run, otherwise, preset);
   experiment.help =
       "Surface diffusion V = Delta H of the ellipsoid with half axes 2, 1, 1 to t = 0.8 (kll21 (1.2)):\n"
       "area, volume, radius and snapshots, with fixed steps 0.01 2^-k with and without projections, with\n"
@@ -154,11 +154,8 @@ int main(int argc, char** argv) {
        "paper: fixed steps | unprojected: fixed steps, no projections | adaptive: adaptive steps | accurate: "
        "small adaptive steps | relaxed: adaptive steps and relaxation"}};
   experiment.grid.labels = {"setting"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.steps = time_steps;
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"initial_surface", initial_surface().name},
                            {"end_time", end_time},
                            {"largest_tau", 0.01},

@@ -80,18 +80,16 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("tumour_growth", "esfem");
+  Experiment experiment("tumour_growth", "esfem", run, otherwise);
   experiment.help =
       "Growth of a tumour from the unit sphere to t = 5: time series and snapshots of a surface that grows "
       "where there is\nactivator. Step sizes 0.01 2^-k; level 0: 2,562 nodes, level 1: 10,242. No units.\n\n"
       "Example: tumour_growth --levels 0 --steps 1 --output tumour.json";
   experiment.grid.axes = {{"gamma", {}, "size of the tumour: factor of the kinetics"}};
-  experiment.grid.otherwise = otherwise;
   experiment.grid.refused = {
       {"mesh", "the tumour starts from a sphere; expected --levels (evolve takes any surface)"}};
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"end_time", time_steps.end_time}, {"seed", disturbance_seed}};
   return run_experiment(experiment, argc, argv);
 }

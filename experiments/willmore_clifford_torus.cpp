@@ -116,7 +116,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("willmore_clifford_torus", "kll21");
+  Experiment experiment("willmore_clifford_torus", "kll21", run, otherwise, preset);
   experiment.help =
       "Willmore flow of the Clifford torus with radii 1 and 1/sqrt 2 on [0, 1] (kll21 Figure 7.4): errors of "
       "position x,\n"
@@ -136,11 +136,8 @@ int main(int argc, char** argv) {
       {"F", {"extrapolated", "implicit"}, "F(x, u) w of (3.5a): extrapolated | implicit in w"},
       {"theta", {"no", "yes"}, "the correction (3.7)"}};
   experiment.grid.labels = {"run", "triangulation", "F", "theta", "bdf"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"major", major}, {"minor", minor}, {"end_time", time_steps.end_time}};
   experiment.meshes =
       "isothermal: n x n cells, n = 8, 12, 16, 24, 32, 44; graded: generated, largest edge 0.7 2^(-level/2)";

@@ -166,7 +166,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("willmore_competitors", "kll21");
+  Experiment experiment("willmore_competitors", "kll21", run, otherwise, preset);
   experiment.help =
       "Willmore flow of the unit sphere, the Clifford torus (radii 1, 2^(-1/2)) and an ellipsoid\n"
       "(1, 1, 0.6) by three schemes: errors, energies, quality of the mesh and seconds per step. Backward\n"
@@ -180,13 +180,10 @@ int main(int argc, char** argv) {
        "willmore: kll21 (3.4)-(3.5) | dziuk_willmore: Dziuk 2008, (2.13) | bgn_willmore: Barrett, Garcke, "
        "Nürnberg 2008, (2.14)"}};
   experiment.grid.labels = {"surface", "flow", "degree"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   const std::string why = "all schemes run with backward Euler steps on generated meshes";
   experiment.grid.refused = {{"mesh", why}, {"bdf", why}, {"start", why}};
   experiment.steps = time_steps;
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"largest_tau", largest_tau},
                            {"end_time", {{"sphere", 0.02}, {"ellipsoid", 0.02}, {"clifford_torus", 0.005}}}};
   experiment.meshes =

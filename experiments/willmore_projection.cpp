@@ -169,7 +169,7 @@ void run(const Choice& choice, Row& row, const std::string&) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("willmore_projection", "kll21");
+  Experiment experiment("willmore_projection", "kll21", run, otherwise, preset);
   experiment.help =
       "Willmore flow without projections of nu_h and z_h, with those of kll21 §7.1 after each step, and "
       "with\n"
@@ -187,13 +187,10 @@ int main(int argc, char** argv) {
       {"mesh_of", {"icosphere", "delaunay"}, "the ellipsoid: distorted icosphere | unstructured"},
       {"radius", {}, "of the sphere of the runs length"}};
   experiment.grid.labels = {"run", "projection", "flow", "F", "mesh_of", "degree", "bdf", "radius"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   const std::string why = "meshes and starting values are those of the runs";
   experiment.grid.refused = {{"mesh", why}, {"start", why}, {"level", why}};
   experiment.steps = steps;
   experiment.cost = [](const Choice& choice) { return choice.degree() * choice.degree() * 0.2; };
-  experiment.run = run;
   experiment.parameters = {{"errors", "order: against BDF5 with 1,024 steps on the same mesh, from t = 0.1"}};
   return run_experiment(experiment, argc, argv);
 }

@@ -171,7 +171,7 @@ double cost(const Choice& choice) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("willmore_relaxation", "kll21");
+  Experiment experiment("willmore_relaxation", "kll21", run, otherwise, preset);
   experiment.help =
       "Willmore flow of an ellipsoid, a red blood cell and a perturbed torus to t = 4 (kll21 Figure 7.5):\n"
       "energies, radii and snapshots, with the paper's steps, with adaptive steps, and with relaxation to\n"
@@ -182,13 +182,10 @@ int main(int argc, char** argv) {
                            "paper: tau = 0.2 2^-8 | implicit: F implicit, to t = 0.1 | adaptive: adaptive "
                            "steps | relaxed: with relaxation"}};
   experiment.grid.labels = {"surface", "setting"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
   const std::string why = "surfaces and steps are those of --surface and --setting (evolve takes any)";
   experiment.grid.refused = {{"mesh", why}, {"step", why}, {"bdf", why}, {"start", why}};
   experiment.steps = time_steps;
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"end_time", end_time},
                            {"tau", "0.2 2^-8; adaptive: the largest"},
                            {"tolerance", tolerance},

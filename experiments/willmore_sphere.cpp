@@ -6,7 +6,6 @@
 // Sample runs:  build/bin/willmore_sphere --preset check --output sphere.json
 //               build/bin/willmore_sphere --projection projected --levels 0-2 --steps 2
 //               build/bin/willmore_sphere --run normals --steps 3
-//               build/bin/willmore_sphere --run growth --projection none --radius 1,1.5 --steps 4
 //               build/bin/willmore_sphere --bdf 3 --degree 3 --levels 0-1 --steps 2,3
 //
 // Writes:       results/paper/willmore_sphere.{json,csv,tex}, from which plots/willmore_sphere.py draws
@@ -17,12 +16,11 @@
 // on [0, 1], exact starting values, tau = 0.2 2^-k, h near 0.55 2^(-j/2), without the correction theta of
 // (3.7), and after each step without and with projections of nu_h and z_h.
 //
-// Beside the published runs: with theta and projections the discrete sphere is stationary, too. The growth
-// of errors without projections on spheres of radius 1 and 1.5, until t = R⁴. Surface diffusion (1.2), for
-// which the sphere is stationary, too.
+// Beside the published runs: with theta and projections the discrete sphere is stationary, too. Surface
+// diffusion (1.2), for which the sphere is stationary, too.
 //
 // Expected orders (Theorem 4.1): h² in L^infinity(H1) for x, nu and H. There is no error in time. Without
-// projections errors grow like exp(8t/R⁴).
+// projections errors grow like exp(8t) (willmore_projection).
 #include <cmath>
 
 #include "experiments/harness/grid.hpp"
@@ -41,16 +39,11 @@ const double exact_energy = 8 * pi;
 
 /// Edge lengths of level 0 on the unit sphere.
 const std::map<std::string, double> largest_h = {
-    {"convergence", 0.55}, {"normals", 0.24}, {"accuracy", 0.21}, {"growth", 0.28}};
-
-/// Errors grow on the scale R⁴.
-HalvedSteps time_steps(const Choice& choice) {
-  return {std::pow(choice.number("radius"), 4), 0.2};
-}
+    {"convergence", 0.55}, {"normals", 0.24}, {"accuracy", 0.21}};
+const HalvedSteps time_steps{1, 0.2};
 
 Block otherwise(bool) {
-  return {{"run", "convergence"}, {"flow", "willmore"}, {"theta", "no"},
-          {"radius", 1.0},        {"degree", 2},        {"bdf", 2},
+  return {{"run", "convergence"}, {"flow", "willmore"}, {"theta", "no"},      {"degree", 2}, {"bdf", 2},
           {"start", "exact"},     {"level", 0},         {"step", range(2, 3)}};
 }
 
@@ -59,7 +52,6 @@ std::vector<Block> preset(bool paper) {
           {{"run", "normals"}, {"step", 3}},
           {{"run", "accuracy"}, {"projection", "projected"}, {"step", 2}},
           {{"theta", "yes"}, {"projection", "projected"}, {"level", {0, 1}}, {"step", 2}},
-          {{"run", "growth"}, {"projection", "none"}, {"radius", {1.0, 1.5}}, {"step", 4}},
           {{"flow", "surface_diffusion"},
            {"projection", "none"},
            {"level", range(0, paper ? 3 : 2)},
@@ -75,35 +67,23 @@ void record_normals(const SurfaceSpace& space, const State& state, Series& serie
   record_curvature(space, state.x, state.u.col(0), series);
 }
 
-/// The values of |nu_h| and |x| at the last time, and the largest distances of |nu_h| from 1 and of |x| from
-/// the radius over all times.
-void describe_normals(double radius, Row& row) {
-  for (const auto& [name, exact] : std::map<std::string, double>{{"nu", 1}, {"radius", radius}}) {
+/// The values of |nu_h| and |x| at the last time, and their largest distances from 1 over all times.
+void describe_normals(Row& row) {
+  for (const std::string name : {"nu", "radius"}) {
     const std::vector<double>&least = row.series.at("min_" + name), &most = row.series.at("max_" + name);
     row.values["last_min_" + name] = least.back();
     row.values["last_max_" + name] = most.back();
     row.values["largest_deviation_of_" + name] =
-        std::max(largest_deviation(least, exact), largest_deviation(most, exact));
+        std::max(largest_deviation(least, 1), largest_deviation(most, 1));
   }
-}
-
-/// The rate at which max ||nu_h| - 1| grows in the last 30% of the time: the fastest mode has taken over by
-/// then.
-double growth_of_normals(const Series& series, double end_time) {
-  std::vector<double> deviation;
-  for (std::size_t i = 0; i < series.at("t").size(); ++i)
-    deviation.push_back(std::max(std::abs(series.at("min_nu")[i] - 1), std::abs(series.at("max_nu")[i] - 1)));
-  return growth_rate(series.at("t"), deviation, 0.7 * end_time);
 }
 
 void run(const Choice& choice, Row& row, const std::string&) {
   // 1. The initial surface and the finite element space on it.
-  const double radius = choice.number("radius");
-  const Surface surface = sphere(radius);
   const auto generate = [&] {
-    return generate_mesh(surface, edge_length(largest_h.at(choice["run"]) * radius, choice.level()));
+    return generate_mesh(sphere(1), edge_length(largest_h.at(choice["run"]), choice.level()));
   };
-  const Mesh mesh = initial_mesh(choice, generate, surface);
+  const Mesh mesh = initial_mesh(choice, generate, sphere(1));
   const SurfaceSpace space(mesh, choice.quadrature());
   describe_mesh(mesh, row);
 
@@ -113,52 +93,44 @@ void run(const Choice& choice, Row& row, const std::string&) {
   if (choice["flow"] == "surface_diffusion") setting.variant.law = surface_diffusion_law();
   setting.theta = choice["theta"] == "yes";
   setting.grid = {choice.bdf(), row.tau, row.steps, choice.start()};
-  const bool with_normals = choice["run"] == "normals" || choice["run"] == "growth";
+  const bool with_normals = choice["run"] == "normals";
   const auto observe = [&](const State& state) {
     if (with_normals) record_normals(space, state, row.series);
   };
-  run_stationary_willmore(space, mesh, stationary_sphere(radius), setting, exact_energy, observe, row);
+  run_stationary_willmore(space, mesh, stationary_sphere(1), setting, exact_energy, observe, row);
 
   // 3. What is said of the normals.
-  if (with_normals) describe_normals(radius, row);
-  if (choice["run"] == "growth")
-    row.values["growth_rate"] = growth_of_normals(row.series, time_steps(choice).end_time);
+  if (with_normals) describe_normals(row);
 }
 
 /// A step with its errors takes about 8 microseconds a node, a mesh about 0.2 ms a vertex.
 double cost(const Choice& choice) {
   const double vertices = 27.5 / std::pow(edge_length(largest_h.at(choice["run"]), choice.level()), 2);
   const double nodes = vertices * choice.degree() * choice.degree();
-  return 0.1 + vertices * 2e-4 + nodes * time_steps(choice).count(choice.step()) * 8e-6;
+  return 0.1 + vertices * 2e-4 + nodes * time_steps.count(choice.step()) * 8e-6;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  Experiment experiment("willmore_sphere", "kll21");
+  Experiment experiment("willmore_sphere", "kll21", run, otherwise, preset);
   experiment.help =
-      "Willmore flow of the unit sphere on [0, 1], without and with projections of nu_h and z_h (kll21 "
-      "Figures 7.1 to 7.3):\n"
-      "errors of position x, normal nu and mean curvature H over mesh width and step size, and the Willmore "
-      "energy. Step\n"
-      "sizes 0.2 2^-k, k = 0, 1, ..; edge lengths 0.55 2^(-j/2), level j = 0, 1, .. (normals 0.24, accuracy "
-      "0.21, growth\n"
-      "0.28 at level 0, times the radius). Lengths and times have no units: V = Lap H + Q.\n\n"
+      "Willmore flow of the unit sphere on [0, 1], without and with projections of nu_h and z_h (kll21\n"
+      "Figures 7.1 to 7.3): errors of position x, normal nu and mean curvature H over mesh width and step "
+      "size,\n"
+      "and the Willmore energy. Step sizes 0.2 2^-k, k = 0, 1, ..; edge lengths 0.55 2^(-j/2), level j = 0, "
+      "1,\n"
+      ".. (normals 0.24, accuracy 0.21 at level 0). Lengths and times have no units: V = Lap H + Q.\n\n"
       "Example: willmore_sphere --levels 0-2 --steps 2 --output table.json";
   experiment.grid.axes = {
       {"run", names_of(largest_h),
-       "convergence: Figures 7.1, 7.3 | normals: Figure 7.2 | accuracy: as convergence, about 2,500 nodes | "
-       "growth: of errors until R⁴"},
+       "convergence: Figures 7.1, 7.3 | normals: Figure 7.2 | accuracy: as convergence, about 2,500 nodes"},
       {"flow", {"willmore", "surface_diffusion"}, "willmore: kll21 (1.1) | surface_diffusion: (1.2)"},
       {"projection", {"none", "projected"}, "of nu_h and z_h after each step"},
-      {"theta", {"no", "yes"}, "the correction (3.7)"},
-      {"radius", {}, "of the sphere; the end time is its fourth power"}};
-  experiment.grid.labels = {"run", "flow", "projection", "theta", "radius"};
-  experiment.grid.otherwise = otherwise;
-  experiment.grid.preset = preset;
-  experiment.steps = time_steps;
+      {"theta", {"no", "yes"}, "the correction (3.7)"}};
+  experiment.grid.labels = {"run", "flow", "projection", "theta"};
+  experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
-  experiment.run = run;
   experiment.parameters = {{"end_time", 1}};
   experiment.meshes = "generated, edge length 0.55 2^(-level/2)";
   return run_experiment(experiment, argc, argv);

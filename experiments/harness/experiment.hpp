@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "experiments/harness/choice.hpp"
 #include "solver/tables/fit_orders.hpp"
@@ -14,6 +15,8 @@ namespace esfem {
 /// An experiment: a grid of independent runs (cells), what one of them does, and how its orders are fitted.
 /// Options, names of cells, labels and the parameters of the table follow from the grid.
 struct Experiment {
+  using Run = std::function<void(const Choice&, Row& row, const std::string& folder)>;
+
   std::string stem, paper;  ///< names of its files; key of the paper in tables
   std::string help;         ///< what it computes, units, sample command lines: the head of --help
   Grid grid;
@@ -23,12 +26,18 @@ struct Experiment {
   /// which are those of earlier processes where it goes on from a checkpoint. Other files of the run
   /// (snapshots, checkpoint_file) go into `folder`, which may not exist yet; "": none are wanted. It is
   /// cells/STEM/CELL beside the table.
-  std::function<void(const Choice&, Row& row, const std::string& folder)> run;
+  Run run;
   nlohmann::json parameters = nlohmann::json::object();  ///< what a table says beside the choices
   std::string meshes = "";                               ///< how meshes are generated, for the same
   RowRange fit_range = {};
 
-  Experiment(std::string stem, std::string paper) : stem(std::move(stem)), paper(std::move(paper)) {}
+  /// What none can be without, and the presets if these are not just the grid's defaults (Grid).
+  Experiment(std::string stem, std::string paper, Run run, std::function<Block(bool paper)> otherwise,
+             std::function<std::vector<Block>(bool paper)> preset = {})
+      : stem(std::move(stem)), paper(std::move(paper)), run(std::move(run)) {
+    grid.otherwise = std::move(otherwise);
+    grid.preset = std::move(preset);
+  }
 };
 
 /// Where the cell with this folder keeps its checkpoint; it is removed when the row is written.

@@ -76,15 +76,13 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
 
 int main(int argc, char** argv) {
   using namespace esfem;
-  Experiment experiment("fake_experiment", "none");
+  Experiment experiment("fake_experiment", "none", run, otherwise);
   experiment.help = "Errors h^exponent + tau^3 by formula.\nSample run: fake_experiment --list";
   experiment.grid.axes = {{"exponent", {}, "of h"}};
-  experiment.grid.otherwise = otherwise;
   experiment.grid.refused = {{"bdf", "the formula has no steps"}};
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = [](const Choice& choice) {
     return std::pow(4.0, choice.level()) * time_steps.count(choice.step());
   };
-  experiment.run = run;
   return run_experiment(experiment, argc, argv);
 }
