@@ -11,6 +11,7 @@
 #include <iterator>
 
 #include "solver/error.hpp"
+#include "solver/read_json.hpp"
 #include "solver/tables/claims.hpp"
 
 namespace esfem::test_claims {
@@ -309,6 +310,17 @@ TEST(Claims, ReadingNamesClaimAndKey) {
   json file = reference({order_claim()});
   file["note"] = "";
   EXPECT_THAT(reading(file), HasSubstr("unknown key 'note'"));
+}
+
+TEST(Claims, OfThisProjectCanBeRead) {
+  int files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(ESFEM_SOURCE_DIR "/reference")) {
+    if (file.path().extension() != ".json") continue;
+    ++files;
+    const Reference reference = reference_from_json(read_json(file.path()), file.path());
+    EXPECT_EQ(reference.experiment, file.path().stem());
+  }
+  EXPECT_GE(files, 17) << "one for each experiment";
 }
 
 TEST(Claims, HaveTheDefaultsOfTheFile) {
