@@ -35,7 +35,7 @@ programs := evolve check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
 .PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu sanitize fuzz crash crash-check consumer-check \
-        format format-check samples tables-check verdicts independent plots-check report report-check packages-check packages-check-each gallery \
+        format format-check samples tables-check verdicts claims-check independent plots-check report report-check packages-check packages-check-each gallery \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -109,7 +109,7 @@ $(stems): %: prepare-%
 	+@$(call run,paper,$@,all)
 
 # All parts of the check run; those that failed are listed at the end. Files they read are traced for the last part.
-check_parts := format-check test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts independent \
+check_parts := format-check test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts claims-check independent \
                plots-check report-check packages-check
 check: build
 	+@failed=""
@@ -123,7 +123,7 @@ check: build
 
 # `check` has built what its parts need; a part that is run on its own builds first.
 ifeq ($(MAKELEVEL),0)
-test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts independent plots-check \
+test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts claims-check independent plots-check \
   report-check packages-check: build
 endif
 
@@ -192,6 +192,9 @@ tables-check:
 plots-check:
 	+@$(call run,check,$(stems),figures)
 
+# Whether the checks of claims can fail: on spoiled tables.
+claims-check:
+	@$(PYTHON) tests/claims/spoil.py --build $(BUILD) --known tests/claims/known.txt results/check
 verdicts:
 	@$(if $(stems),$(BIN)/check_orders $(stems:%=results/check/%.json),echo "no experiments")
 

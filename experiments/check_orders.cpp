@@ -54,6 +54,7 @@ std::string expected(const Claim& claim) {
   std::string text;
   if (std::isfinite(least)) text = format(">= %g", least);
   if (std::isfinite(claim.at_most)) text += format("%s<= %g", text.empty() ? "" : ", ", claim.at_most);
+  if (claim.observed) text += format(", %g +- %g", *claim.observed, Claim::observed_tolerance);
   return text;
 }
 

@@ -65,6 +65,7 @@ void read_order(const JsonReader& reader, Claim& claim) {
   claim.tolerance = reader.number("tolerance");
   if (claim.tolerance < 0) throw InputError(reader.where() + ": 'tolerance' is negative");
   claim.at_most = reader.number_or("at_most", claim.at_most);
+  if (reader.has("observed")) claim.observed = reader.number("observed");
 }
 
 void read_bounds_of(Claim::Kind kind, const JsonReader& reader, Claim& claim) {
@@ -136,7 +137,7 @@ Claim claim_from_json(const Json& json, const std::string& place) {
                                  "rows", "presets",   "figures", "at_most", "finding",  "remark"};
   const std::string kind = reader.text("kind");
   if (kind == "order") {
-    known.insert({"variable", "expected", "tolerance"});
+    known.insert({"variable", "expected", "tolerance", "observed"});
     read_order(reader, claim);
   } else if (kind == "size" || kind == "value") {
     known.insert("at_least");
@@ -253,6 +254,9 @@ Verdict check_order(const Claim& claim, const Selection& rows) {
   else if (!(verdict.value <= claim.at_most))
     verdict.reason =
         format("Convergence order too high: %.2f, expected at most %g", verdict.value, claim.at_most);
+  else if (claim.observed && !(std::abs(verdict.value - *claim.observed) <= Claim::observed_tolerance))
+    verdict.reason = format("Convergence order %.2f is not the %g that is known here, within %g",
+                            verdict.value, *claim.observed, Claim::observed_tolerance);
   return verdict;
 }
 

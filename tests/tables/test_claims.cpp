@@ -312,6 +312,18 @@ TEST(Claims, ReadingNamesClaimAndKey) {
   EXPECT_THAT(reading(file), HasSubstr("unknown key 'note'"));
 }
 
+TEST(Claims, AnOrderThatIsKnownToBeHigherMustNotBecomeLower) {
+  json claim = order_claim();  // the order is 3
+  claim["expected"] = 2;
+  const auto verdict = [&](double observed) {
+    claim["observed"] = observed;
+    return check_claim(reference_from_json(reference({claim}), "r.json").claims.at(0), sample_table());
+  };
+  EXPECT_TRUE(verdict(3.2).met);
+  EXPECT_FALSE(verdict(4).met);
+  EXPECT_THAT(verdict(4).reason, HasSubstr("is not the 4 that is known here"));
+}
+
 TEST(Claims, OfThisProjectCanBeRead) {
   int files = 0;
   for (const auto& file : std::filesystem::directory_iterator(ESFEM_SOURCE_DIR "/reference")) {

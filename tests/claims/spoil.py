@@ -1,0 +1,121 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Can the checks of claims fail? Spoils the tables of a folder and lists the claims that are met all the same.
+
+    tests/claims/spoil.py [--build DIR] [--known FILE] [FOLDER]     FOLDER has tables, default results/check
+
+A claim on an order has to fail when one order in its variable is taken away from all errors, one with an upper bound when
+an order is added; one on a size or a value with an upper bound when the number is doubled, one with a lower bound when it is
+halved. Exempt are bounds at round-off, 1e-9 and less, and numbers that are zero: twice zero is zero, and what is at round-off
+jumps by more than a factor when it is wrong. The claims in FILE, "STEM ID: what it does not see" a line, are known not to
+see it: they are to become fewer. Exit code 0 when the others fail as they should and no line of the file has become wrong, 3
+otherwise."""
+import argparse
+import copy
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def scaled_errors(table, factor):
+    """All errors, and series of errors, of each row times factor(row)."""
+    for row in table["rows"]:
+        by = factor(row)
+        for norms in row.get("errors", {}).values():
+            for norm in norms:
+                norms[norm] *= by
+        for name, values in row.get("series", {}).items():
+            if "nodal" in name or "lifted" in name:
+                row["series"][name] = [by * value if isinstance(value, (int, float)) else value for value in values]
+
+
+def with_other_order(variable, change):
+    def spoil(table):
+        largest = max(row[variable] for row in table["rows"])
+        scaled_errors(table, lambda row: (row[variable] / largest) ** change)
+    return spoil
+
+
+def times(factor):
+    def spoil(table):
+        scaled_errors(table, lambda row: factor)
+        for row in table["rows"]:
+            for name, value in row.get("values", {}).items():
+                if isinstance(value, (int, float)):
+                    row["values"][name] = factor * value
+    return spoil
+
+
+SPOILED = {f"an order in {variable} {word}": with_other_order(variable, change)
+           for variable in ("h", "tau") for word, change in (("less", -1), ("more", 1))}
+SPOILED |= {"twice as large": times(2), "half as large": times(0.5)}
+ROUND_OFF = 1e-9
+
+
+def required(claim):
+    """What a claim has to see."""
+    bounds = dict(part.split() for part in re.findall(r"[<>]= [-+.e0-9]+", claim["expected"]))
+    bounds = {sign: float(bound) for sign, bound in bounds.items()}
+    if claim["kind"] == "order":
+        return [f"an order in {claim['variable']} {word}" for sign, word in ((">=", "less"), ("<=", "more"))
+                if bounds.get(sign, -8) != -8]
+    number = float(claim["measured"].split()[0])
+    if number == 0:
+        return []
+    if number < 0:  # the bounds change their roles
+        bounds = {{">=": "<=", "<=": ">="}[sign]: -bound for sign, bound in bounds.items()}
+    return [word for sign, word in (("<=", "twice as large"), (">=", "half as large"))
+            if bounds.get(sign, 0) > 0 and (sign == ">=" or bounds[sign] > ROUND_OFF)]
+
+
+def verdicts(build, table, folder):
+    """{id: claim} of a table. A table that cannot be checked any more has no claim that is met."""
+    path, output = folder / f"{table['experiment']}.json", folder / "verdicts.json"
+    path.write_text(json.dumps(table), encoding="utf-8")
+    output.unlink(missing_ok=True)
+    done = subprocess.run([build / "bin/check_orders", path, "--output", output], capture_output=True, text=True, check=False,
+                          cwd=ROOT)
+    if done.returncode not in (0, 3):
+        sys.exit(done.stderr)
+    entry, = json.loads(output.read_text(encoding="utf-8"))["tables"]
+    return {claim["id"]: claim for claim in entry["claims"]}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", nargs="?", default=ROOT / "results/check", type=pathlib.Path)
+    parser.add_argument("--build", default=ROOT / "build", type=pathlib.Path)
+    parser.add_argument("--known", type=pathlib.Path)
+    arguments = parser.parse_args()
+    blind, seen = [], 0
+    with tempfile.TemporaryDirectory() as name:
+        for path in sorted(arguments.folder.glob("*.json")):
+            table = json.loads(path.read_text(encoding="utf-8"))
+            good = verdicts(arguments.build, table, pathlib.Path(name))
+            spoiled = {}
+            for what, spoil in SPOILED.items():
+                bad = copy.deepcopy(table)
+                spoil(bad)
+                spoiled[what] = verdicts(arguments.build, bad, pathlib.Path(name))
+            for claim in good.values():
+                missed = [what for what in required(claim) if spoiled[what][claim["id"]]["met"]] if claim["met"] else []
+                seen += not missed
+                if missed:
+                    blind.append(f"{path.stem} {claim['id']}: {', '.join(missed)}")
+    lines = arguments.known.read_text(encoding="utf-8").splitlines() if arguments.known else []
+    known = [line for line in lines if line and not line.startswith("#")]
+    for line in sorted(set(blind) - set(known)):
+        print(f"is met all the same: {line}")
+    for line in sorted(set(known) - set(blind)):
+        print(f"is no longer so, take it out of {arguments.known}: {line}")
+    print(f"{seen} claims fail when they should, {len(blind)} do not, {len(known)} of these are known")
+    sys.exit(3 if set(blind) != set(known) else 0)
+
+
+if __name__ == "__main__":
+    main()
