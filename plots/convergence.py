@@ -294,7 +294,7 @@ def _places(axes, panel, x_range, y_range):
         if curve.order and not math.isnan(slope):
             references.append((curve.order, {**dashed, "color": styles[curve.label]["color"]}, polyline))
     orders, looks, owners = zip(*references) if references else ((), (), ())
-    labels = [f"$O({SYMBOLS[panel.variable]}^{{{p:g}}})$" for p in orders]
+    labels = [f"$O({SYMBOLS[panel.variable]}{'' if p == 1 else f'^{{{p:g}}}'})$" for p in orders]
     placements = place_slopes(size, polylines, [p * per_decade[1] / per_decade[0] for p in orders],
                               [_label_size(label) for label in labels], owners)
     return None if placements is None else list(zip(labels, looks, placements))

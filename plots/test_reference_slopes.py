@@ -41,7 +41,7 @@ class ReferenceSlopes(unittest.TestCase):
         lines = [Curve(f"q{p}", np.column_stack([tau, tau**p]), p) for p in orders]
         figure = draw_panels([Panel("one", lines, "tau"), Panel("other", lines[:1], "tau")], "error")
         axes = figure.axes[0]
-        self.assertEqual(slopes_of(figure)[0], [r"$O(\tau^{%d})$" % p for p in orders])
+        self.assertEqual(slopes_of(figure)[0], [r"$O(\tau)$" if p == 1 else r"$O(\tau^{%d})$" % p for p in orders])
         for p, line, curve in zip(orders, references(axes), data_lines(axes)):
             self.assertEqual(line.get_color(), curve.get_color())
             x, y = exponents_to_points(axes, line).T
