@@ -99,9 +99,10 @@ nlohmann::json progress(const LaggedBlockSolver::Guess& guess) {
 }
 
 void resume(LaggedBlockSolver::Guess& guess, const nlohmann::json& saved, int dofs) {
-  guess.u_change = unpacked(saved.at("u_change"));
-  guess.w_change = unpacked(saved.at("w_change"));
-  for (const Field* field : {&guess.u_change, &guess.w_change}) check_rows(*field, dofs);
+  const Field u_change = unpacked(saved.at("u_change")), w_change = unpacked(saved.at("w_change"));
+  for (const Field* field : {&u_change, &w_change}) check_rows(*field, dofs);
+  guess.u_change = u_change;
+  guess.w_change = w_change;
 }
 
 }  // namespace esfem

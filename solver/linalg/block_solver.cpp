@@ -78,7 +78,7 @@ struct BlockSolver::Factor {
         refined(b),
         rest(b) {}
 
-  /// Solves (M + i factor A) y = b from the guess y = refined, see BlockSolver::refine.
+  /// Solves (M + i beta_kappa A) y = b from the guess y = refined, see BlockSolver::refine.
   std::optional<int> refine(double beta_kappa, const SymmetricMatrix& M, const SymmetricMatrix& A, int most) {
     const auto excess = [&] {
       const ColumnSizes bound = attainable(M, A, beta_kappa, refined, b, rest);
