@@ -49,10 +49,13 @@ std::string measured(const Claim& claim, const Verdict& verdict) {
   return format("%.2f [%.2f, %.2f]", verdict.value, verdict.ci95[0], verdict.ci95[1]);
 }
 
+double least(const Claim& claim) {
+  return claim.kind == Claim::order ? claim.expected - claim.tolerance : claim.at_least;
+}
+
 std::string expected(const Claim& claim) {
-  const double least = claim.kind == Claim::order ? claim.expected - claim.tolerance : claim.at_least;
   std::string text;
-  if (std::isfinite(least)) text = format(">= %g", least);
+  if (std::isfinite(least(claim))) text = format(">= %g", least(claim));
   if (std::isfinite(claim.at_most)) text += format("%s<= %g", text.empty() ? "" : ", ", claim.at_most);
   if (claim.observed) text += format(", %g +- %g", *claim.observed, Claim::observed_tolerance);
   return text;
@@ -107,6 +110,8 @@ nlohmann::json to_json(const Claim& claim, const Verdict& verdict) {
                          {"reason", verdict.reason},
                          {"remark", claim.remark}};
   if (!claim.quote.empty()) json["source"]["quote"] = claim.quote;
+  if (std::isfinite(least(claim))) json["at_least"] = least(claim);
+  if (std::isfinite(claim.at_most)) json["at_most"] = claim.at_most;
   if (!claim.family.empty()) json["family"] = claim.family;
   if (!claim.norm.empty()) json["norm"] = claim.norm;
   if (!claim.variable.empty()) json["variable"] = claim.variable;
