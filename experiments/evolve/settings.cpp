@@ -24,8 +24,10 @@ json number(const JsonReader& reader, const Key& key) {
 json word(const JsonReader& reader, const Key& key) {
   const std::string value = reader.text(key.name);
   if (std::find(key.words.begin(), key.words.end(), value) != key.words.end()) return value;
+  std::set<std::string> known(key.words.begin(), key.words.end());
+  if (key.kind == Key::truth_or_word) known.insert({"true", "false"});
   throw InputError(reader.where() + ": found " + key.name + " = \"" + value + "\"; expected one of " +
-                   listed({key.words.begin(), key.words.end()}));
+                   listed(known));
 }
 
 json value_of(const JsonReader& reader, const Key& key) {
@@ -37,7 +39,8 @@ json value_of(const JsonReader& reader, const Key& key) {
   case Key::word:
     return word(reader, key);
   case Key::truth_or_word:
-    return reader.is_truth(key.name) ? json(reader.truth_or(key.name, false)) : word(reader, key);
+    if (const json value = reader.truth_or_text(key.name); value.is_boolean()) return value;
+    return word(reader, key);
   default:
     return number(reader, key);
   }

@@ -36,6 +36,12 @@ std::string JsonReader::text(const std::string& key) const {
   return value;
 }
 
+Json JsonReader::truth_or_text(const std::string& key) const {
+  const Json& value = at(key);
+  if (!value.is_boolean() && !value.is_string()) wrong_type(key, "true, false or a string", value);
+  return value;
+}
+
 double JsonReader::number(const std::string& key) const {
   const Json& value = at(key);
   if (!value.is_number()) wrong_type(key, "a number", value);

@@ -24,7 +24,7 @@ class JsonReader {
     return has(key) ? number(key) : otherwise;
   }
   bool truth_or(const std::string& key, bool otherwise) const;
-  bool is_truth(const std::string& key) const { return has(key) && json_[key].is_boolean(); }
+  nlohmann::json truth_or_text(const std::string& key) const;
   bool is_object(const std::string& key) const { return has(key) && json_[key].is_object(); }
   /// One that an int can hold.
   int integer(const std::string& key) const;

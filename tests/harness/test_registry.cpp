@@ -71,6 +71,12 @@ TEST(Registry, EveryKeyIsReadAndCheckedWhereItBelongs) {
                                    : !key.words.empty()   ? json(key.words.back())
                                                           : json(1)}};
         EXPECT_EQ(refusal(good), "") << good;
+        if (!key.words.empty()) {
+          bad[object] = {{key.name, "no_such_word"}};
+          EXPECT_THAT(refusal(bad), AllOf(HasSubstr("expected one of"), HasSubstr(key.words.back()))) << bad;
+          const bool names_truth = refusal(bad).find("false, true") != std::string::npos;
+          EXPECT_EQ(names_truth, key.kind == Key::truth_or_word) << refusal(bad);
+        }
         if (key.kind != Key::positive && key.kind != Key::not_negative) continue;
         good[object][key.name] = -1;
         EXPECT_THAT(refusal(good), HasSubstr(key.name + " = -1")) << good;
