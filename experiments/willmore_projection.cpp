@@ -4,7 +4,6 @@
 //
 // Sample runs:  build/bin/willmore_projection --preset check --output projection.json
 //               build/bin/willmore_projection --projection coefficients --bdf 3 --steps 4-6
-//               build/bin/willmore_projection --run length --projection none,coefficients --radius 1.5
 //
 // Writes:       results/paper/willmore_projection.{json,csv,tex}, from which plots/willmore_projection.py
 // draws
@@ -44,7 +43,6 @@ const Vec3 axes(2, 2, 1.6);  ///< half axes of the ellipsoid
 
 Block otherwise(bool paper) {
   return {{"run", "order"},
-          {"projection", {"none", "projected", "coefficients"}},
           {"flow", "willmore"},
           {"F", "extrapolated"},
           {"mesh_of", "icosphere"},
@@ -76,9 +74,16 @@ HalvedSteps steps(const Choice& choice) {
   const double R4 = std::pow(choice.number("radius"), 4);
   if (choice["run"] == "length") return {0.5 * R4, 0.1 * R4};
   if (choice["run"] == "sphere") return sphere_steps;
-  const int k = choice.step(), last = reference_k - 2;
-  if (k < 1 || k > last) throw InputError(format("--steps: found %d, expected 1 to %d", k, last));
+  if (const int k = choice.step(), last = reference_k - 2; k < 1 || k > last)
+    throw InputError(format("--steps: found %d, expected 1 to %d", k, last));
   return order_steps;
+}
+
+/// With projections after each step |nu_h| is 1; radius and mesh_of are of one kind of runs each.
+bool is_a_run(const Choice& choice) {
+  const bool is_length = choice["run"] == "length";
+  return (is_length ? choice["projection"] != "projected" : choice.number("radius") == 1) &&
+         (choice["run"] == "order" || choice["mesh_of"] == "icosphere");
 }
 
 WillmoreFlow::Variant variant_of(const Choice& choice) {
@@ -106,7 +111,6 @@ void measure_order(const Choice& choice, Row& row) {
   const Mesh mesh = ellipsoid_mesh(choice, surface);
   const SurfaceSpace space(mesh, choice.quadrature());
   describe_mesh(mesh, row);
-
   const WillmoreFlow::Variant variant = variant_of(choice);
   WillmoreFlow flow(space, variant);
   const WillmoreStart start = willmore_start_on(space, surface, mesh.nodes, variant.law, false);
@@ -124,9 +128,8 @@ void measure_order(const Choice& choice, Row& row) {
 
 /// Errors against the exact solution at rest, of nu_h as the scheme has it and normalised in the nodes.
 void measure_sphere(const Choice& choice, Row& row) {
-  const Surface surface = sphere(1);
-  const Mesh mesh = initial_mesh(
-      {}, 0, [&] { return generate_mesh(surface, 0.55); }, surface, choice.degree());
+  const auto generate = [] { return generate_mesh(sphere(1), 0.55); };
+  const Mesh mesh = initial_mesh({}, 0, generate, sphere(1), choice.degree());
   const SurfaceSpace space(mesh, choice.quadrature());
   describe_mesh(mesh, row);
   const ExactEvolution exact = stationary_sphere(1);
@@ -144,8 +147,8 @@ void measure_sphere(const Choice& choice, Row& row) {
 void measure_length(const Choice& choice, Row& row) {
   const double radius = choice.number("radius");
   const Surface surface = sphere(radius);
-  const Mesh mesh = initial_mesh(
-      {}, 0, [&] { return icosphere(radius, 2); }, surface, choice.degree());
+  const auto generate = [&] { return icosphere(radius, 2); };
+  const Mesh mesh = initial_mesh({}, 0, generate, surface, choice.degree());
   const SurfaceSpace space(mesh, choice.quadrature());
   describe_mesh(mesh, row);
   const WillmoreFlow::Variant variant = variant_of(choice);
@@ -189,6 +192,7 @@ int main(int argc, char** argv) {
   experiment.grid.labels = {"run", "projection", "flow", "F", "mesh_of", "degree", "bdf", "radius"};
   const std::string why = "meshes and starting values are those of the runs";
   experiment.grid.refused = {{"mesh", why}, {"start", why}, {"level", why}};
+  experiment.grid.admits = is_a_run;
   experiment.steps = steps;
   experiment.cost = [](const Choice& choice) { return choice.degree() * choice.degree() * 0.2; };
   experiment.parameters = {{"errors", "order: against BDF5 with 1,024 steps on the same mesh, from t = 0.1"}};

@@ -119,8 +119,7 @@ Cell cell_of(const Experiment& experiment, const Choice& choice) {
 std::vector<Cell> cells_of(const Experiment& experiment, const std::vector<Choice>& runs) {
   std::vector<Cell> cells;
   for (const Choice& choice : runs) cells.push_back(cell_of(experiment, choice));
-  if (cells.empty())
-    throw InputError("no cell is left of the grid; expected --levels and --steps that select some");
+  if (cells.empty()) throw InputError("the values given select no run; expected some that do (see --help)");
   return cells;
 }
 
