@@ -158,8 +158,9 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
   const Concentration u_0{choice["constant"] == "unit" ? 1 / 226.7724255776 : 225.0 / 56693};
   const UniformSteps steps{choice.bdf(), row.tau, row.steps, choice.start()};
   const auto starts = [&](const std::string& initial) {
-    return initial_values(space, mesh.nodes, u_0, epsilon, initial.rfind("ritz", 0) == 0,
-                          initial.find("theta") != std::string::npos);
+    const bool by_ritz_map = initial == "ritz" || initial == "ritz_theta";
+    const bool with_theta = initial == "ritz_theta" || initial == "interpolation_theta";
+    return initial_values(space, mesh.nodes, u_0, epsilon, by_ritz_map, with_theta);
   };
   const bool compared = choice["initial"] != "interpolation";
   Reference reference;

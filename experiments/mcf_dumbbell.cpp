@@ -175,9 +175,9 @@ int main(int argc, char** argv) {
   experiment.help =
       "Mean curvature flow of a dumbbell up to its pinch singularity at t = 0.082233 by several methods\n"
       "(kll19 Figures 13.3 to 13.6): time series, snapshots and the pinch time of each. Step sizes\n"
-      "0.003 2^-k, k = 0, 1, ..; level 0: about 3,000 nodes, level 1: about 10,522, as published. No units:\n"
-      "v = -H nu. With --output FILE.json the surfaces go to cells/mcf_dumbbell/CELL/surfaces.pvd beside "
-      "it.\n\n"
+      "0.003 2^-k, k = 0, 1, ..; level 0: about 3,000 nodes, level 1: about 10,522, as published. v = -H nu "
+      "has\n"
+      "no units. With --output FILE.json surfaces go to cells/mcf_dumbbell/CELL/surfaces.pvd beside it.\n\n"
       "Example: mcf_dumbbell --flow mean_curvature --variant normalised --steps 2 --output dumbbell.json";
   experiment.grid.axes = {
       {"flow",

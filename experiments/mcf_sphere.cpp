@@ -158,8 +158,7 @@ int main(int argc, char** argv) {
   experiment.help =
       "Mean curvature flow of the sphere of radius 2 on [0, 0.6]: errors of position x, velocity v, normal\n"
       "nu and mean curvature H over step size and mesh width (kll19 Figures 13.1, 13.2). Step sizes\n"
-      "0.2 2^-k, k = 0..7; edge lengths 0.5 2^(-j/2), level j = 0..4. Lengths and times have no units: v = "
-      "-H nu.\n\n"
+      "0.2 2^-k, k = 0..7; edge lengths 0.5 2^(-j/2), level j = 0..4. v = -H nu has no units.\n\n"
       "Example: mcf_sphere --preset check --levels 0 --steps 2-4 --output table.json";
   experiment.grid.axes = {
       {"run",
