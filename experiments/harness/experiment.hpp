@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "experiments/harness/choice.hpp"
+#include "solver/tables/comparison.hpp"
 #include "solver/tables/fit_orders.hpp"
 #include "solver/tables/table.hpp"
 
@@ -30,6 +31,7 @@ struct Experiment {
   nlohmann::json parameters = nlohmann::json::object();  ///< what a table says beside the choices
   std::string meshes = "";                               ///< how meshes are generated, for the same
   RowRange fit_range = {};
+  std::vector<Comparison> comparisons = {};  ///< of rows of the whole table
 
   /// What none can be without, and the presets if these are not just the grid's defaults (Grid).
   Experiment(std::string stem, std::string paper, Run run, std::function<Block(bool paper)> otherwise,

@@ -284,6 +284,7 @@ void answer(const Experiment& experiment, const Request& request, Table table) {
     table.rows = run_all(experiment, cells, output);
   else
     collect(cells, request.collect_from, table);
+  for (const Comparison& comparison : experiment.comparisons) add_ratios(comparison, table);
   table.fits = fit_table(table, experiment.fit_range);
   write_table(table, output);
   if (request.collect_from.empty())
