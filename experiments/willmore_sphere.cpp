@@ -17,18 +17,21 @@
 // (3.7), and after each step without and with projections of nu_h and z_h.
 //
 // Beside the published runs: with theta and projections the discrete sphere is stationary, too. Surface
-// diffusion (1.2), for which the sphere is stationary, too.
+// diffusion (1.2), for which the sphere is stationary, too. And a nearly round sphere, whose mode l = 2
+// decays at the rate 24.
 //
 // Expected orders (Theorem 4.1): h² in L^infinity(H1) for x, nu and H. There is no error in time. Without
 // projections errors grow like exp(8t) (willmore_projection).
 #include <cmath>
 
 #include "experiments/harness/grid.hpp"
+#include "experiments/harness/nearly_round_runs.hpp"
 #include "experiments/harness/stationary_willmore.hpp"
 #include "solver/analysis/series.hpp"
 #include "solver/constants.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/problems/exact_evolution.hpp"
+#include "solver/problems/nearly_round_sphere.hpp"
 
 namespace {
 
@@ -39,8 +42,11 @@ const double exact_energy = 8 * pi;
 
 /// Edge lengths of level 0 on the unit sphere.
 const std::map<std::string, double> largest_h = {
-    {"convergence", 0.55}, {"normals", 0.24}, {"accuracy", 0.21}};
-const HalvedSteps time_steps{1, 0.2};
+    {"convergence", 0.55}, {"normals", 0.24}, {"accuracy", 0.21}, {"nearly_round", 0.4}};
+
+HalvedSteps time_steps(const Choice& choice) {
+  return choice["run"] == "nearly_round" ? HalvedSteps{0.05, 5e-4} : HalvedSteps{1, 0.2};
+}
 
 Block otherwise(bool) {
   return {{"run", "convergence"}, {"flow", "willmore"}, {"theta", "no"},      {"degree", 2}, {"bdf", 2},
@@ -51,6 +57,10 @@ std::vector<Block> preset(bool paper) {
   return {{{"level", range(0, paper ? 4 : 3)}, {"step", paper ? range(0, 6) : range(1, 3)}},
           {{"run", "normals"}, {"step", 3}},
           {{"run", "accuracy"}, {"projection", "projected"}, {"step", 2}},
+          {{"run", "nearly_round"},
+           {"flow", {"willmore", "surface_diffusion"}},
+           {"projection", "none"},
+           {"step", 0}},
           {{"theta", "yes"}, {"projection", "projected"}, {"level", {0, 1}}, {"step", 2}},
           {{"flow", "surface_diffusion"},
            {"projection", "none"},
@@ -80,10 +90,12 @@ void describe_normals(Row& row) {
 
 void run(const Choice& choice, Row& row, const std::string&) {
   // 1. The initial surface and the finite element space on it.
+  const bool nearly_round = choice["run"] == "nearly_round";
+  const Surface surface = nearly_round ? nearly_round_sphere() : sphere(1);
   const auto generate = [&] {
-    return generate_mesh(sphere(1), edge_length(largest_h.at(choice["run"]), choice.level()));
+    return generate_mesh(surface, edge_length(largest_h.at(choice["run"]), choice.level()));
   };
-  const Mesh mesh = initial_mesh(choice, generate, sphere(1));
+  const Mesh mesh = initial_mesh(choice, generate, surface);
   const SurfaceSpace space(mesh, choice.quadrature());
   describe_mesh(mesh, row);
 
@@ -92,7 +104,10 @@ void run(const Choice& choice, Row& row, const std::string&) {
   setting.variant.projection = projection_of(choice["projection"]);
   if (choice["flow"] == "surface_diffusion") setting.variant.law = surface_diffusion_law();
   setting.theta = choice["theta"] == "yes";
-  setting.grid = {choice.bdf(), row.tau, row.steps, choice.start()};
+  setting.grid = {choice.bdf(), row.tau, row.steps,
+                  nearly_round ? parse_start("substeps:16") : choice.start()};
+  if (nearly_round)
+    return measure_willmore_decay(space, mesh.nodes, setting.variant, setting.theta, setting.grid, row);
   const bool with_normals = choice["run"] == "normals";
   const auto observe = [&](const State& state) {
     if (with_normals) record_normals(space, state, row.series);
@@ -107,7 +122,7 @@ void run(const Choice& choice, Row& row, const std::string&) {
 double cost(const Choice& choice) {
   const double vertices = 27.5 / std::pow(edge_length(largest_h.at(choice["run"]), choice.level()), 2);
   const double nodes = vertices * choice.degree() * choice.degree();
-  return 0.1 + vertices * 2e-4 + nodes * time_steps.count(choice.step()) * 8e-6;
+  return 0.1 + vertices * 2e-4 + nodes * time_steps(choice).count(choice.step()) * 8e-6;
 }
 
 }  // namespace
@@ -124,12 +139,13 @@ int main(int argc, char** argv) {
       "Example: willmore_sphere --levels 0-2 --steps 2 --output table.json";
   experiment.grid.axes = {
       {"run", names_of(largest_h),
-       "convergence: Figures 7.1, 7.3 | normals: Figure 7.2 | accuracy: as convergence, about 2,500 nodes"},
+       "convergence: Figures 7.1, 7.3 | normals: Figure 7.2 | accuracy: as convergence, about 2,500 nodes | "
+       "nearly_round: decay of the mode l = 2, on [0, 0.05]"},
       {"flow", {"willmore", "surface_diffusion"}, "willmore: kll21 (1.1) | surface_diffusion: (1.2)"},
       {"projection", {"none", "projected"}, "of nu_h and z_h after each step"},
       {"theta", {"no", "yes"}, "the correction (3.7)"}};
   experiment.grid.labels = {"run", "flow", "projection", "theta"};
-  experiment.steps = [](const Choice&) { return time_steps; };
+  experiment.steps = time_steps;
   experiment.cost = cost;
   experiment.parameters = {{"end_time", 1}};
   experiment.meshes = "generated, edge length 0.55 2^(-level/2)";
