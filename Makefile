@@ -34,8 +34,9 @@ stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*
 programs := evolve check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
-.PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu sanitize fuzz crash crash-check consumer-check \
-        format format-check samples tables-check verdicts claims-check independent plots-check report report-check packages-check packages-check-each gallery \
+.PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu test-norms sanitize fuzz crash \
+        crash-check consumer-check format format-check samples tables-check verdicts claims-check independent plots-check report \
+        report-check packages-check packages-check-each gallery \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -109,8 +110,8 @@ $(stems): %: prepare-%
 	+@$(call run,paper,$@,all)
 
 # All parts of the check run; those that failed are listed at the end. Files they read are traced for the last part.
-check_parts := format-check test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts claims-check independent \
-               plots-check report-check packages-check
+check_parts := format-check test-library test-plots test-vtu test-norms crash-check consumer-check samples tables-check verdicts \
+               claims-check independent plots-check report-check packages-check
 check: build
 	+@failed=""
 	for part in $(check_parts); do
@@ -123,14 +124,14 @@ check: build
 
 # `check` has built what its parts need; a part that is run on its own builds first.
 ifeq ($(MAKELEVEL),0)
-test-library test-plots test-vtu crash-check consumer-check samples tables-check verdicts claims-check independent plots-check \
-  report-check packages-check: build
+test-library test-plots test-vtu test-norms crash-check consumer-check samples tables-check verdicts claims-check independent \
+  plots-check report-check packages-check: build
 endif
 
 # run_tests(folder, options): tests that pass are not listed.
 run_tests = ctest --test-dir $(1) --output-on-failure -j$(local_jobs) $(2) | \
   { grep -vE '^ +Start +[0-9]+: |   Passed  ' || true; }
-test: test-library test-plots test-vtu
+test: test-library test-plots test-vtu test-norms
 test-library:
 	@$(call run_tests,$(BUILD))
 test-plots:
@@ -140,6 +141,9 @@ test-plots:
 # VTK and ParaView read the snapshots where they are installed; so their files belong to no package of the lists.
 test-vtu:
 	@$(PYTHON) tests/mesh/test_vtu_files.py -q
+# The errors of elements of degree 2 to 4, computed anew with numpy from nodal values.
+test-norms:
+	@$(PYTHON) tests/analysis/test_norms.py -q
 
 # Sanitizers for the tests of all parts below the flows; flows and the finest meshes take too long.
 sanitize:
