@@ -211,6 +211,7 @@ int main(int argc, char** argv) {
       {"constant", {"unit", "printed"}, "of the initial u: unit: max |u| = 1 | printed: 225/56693"},
       {"epsilon", {}, "of the equation"}};
   experiment.grid.labels = {"initial", "constant"};
+  experiment.comparisons = {{nlohmann::json::object(), "_over_coarser", {"w_difference_max_at_0"}, -1}};
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
   experiment.parameters = {{"end_time", time_steps.end_time},

@@ -186,6 +186,8 @@ int main(int argc, char** argv) {
        "extrapolation: as (2.18) prints it | difference: (7.2) minus (2.19) | cost: run time of (7.2) | "
        "growth: of an error in u | dynamic: dynamic velocity law | order: errors against small steps"}};
   experiment.grid.labels = {"run", "bdf"};
+  experiment.comparisons = {{{{"run", "convergence"}}, "_over_additive", {"x_nodal_L2"}},
+                            {nlohmann::json::object(), "_over_larger_tau", {"u_lifted_H1_semi"}, 0, 2}};
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
   experiment.parameters = {

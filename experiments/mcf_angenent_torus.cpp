@@ -153,6 +153,7 @@ int main(int argc, char** argv) {
       {"flow", {"mean_curvature", "dziuk"}, "mean_curvature: kll19 (5.1) | dziuk: kll19 (3.6)"},
       {"triangulation", {"grid", "unstructured"}, "grid: uniform in arclength and angle | unstructured"}};
   experiment.grid.labels = {"run", "flow", "triangulation", "degree", "bdf"};
+  experiment.comparisons = {{{{"flow", "mean_curvature"}, {"bdf", 3}}, "_over_kll19", {"x_lifted_L2"}}};
   experiment.steps = [](const Choice& choice) { return choice["run"] == "order" ? order_steps : time_steps; };
   experiment.cost = cost;
   experiment.parameters = {{"end_time", time_steps.end_time}};

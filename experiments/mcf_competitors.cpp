@@ -145,6 +145,11 @@ int main(int argc, char** argv) {
   };
   const std::string why = "all schemes run on generated meshes from exact starting values";
   experiment.grid.refused = {{"mesh", why}, {"start", why}};
+  const nlohmann::json kll19 = {{"flow", "mean_curvature"}, {"bdf", 3}},
+                       euler = {{"flow", "dziuk"}, {"bdf", 1}};
+  experiment.comparisons = {{kll19, "_over_kll19", {"distance", "x_nodal_L2", "nu_nodal_H1", "H_nodal_L2"}},
+                            {euler, "_over_dziuk_bdf1", {"x_nodal_L2"}},
+                            {nlohmann::json::object(), "_over_larger_tau", {"distance"}, 0, 4}};
   experiment.steps = [](const Choice& choice) { return case_of(choice).time_steps; };
   experiment.cost = cost;
   experiment.parameters = {{"start", "exact"},

@@ -189,6 +189,12 @@ int main(int argc, char** argv) {
        "of (5.1): nu_h normalised | v_h by interpolation | stabilising term of §14, alpha = 1, 10, 100"}};
   experiment.grid.labels = {"flow", "variant", "degree", "start"};
   experiment.grid.implied = implied;
+  experiment.comparisons = {
+      {{{"variant", "plain"}}, "_over_plain", {"pinch_time", "last_max_nu", "widest_radius_at_0.06"}},
+      {{{"variant", "normalised"}}, "_over_normalised", {"pinch_time"}},
+      {{{"flow", "mean_curvature"}}, "_over_kll19", {"smallest_elements_at_0.06"}},
+      {nlohmann::json::object(), "_over_coarser", {"pinch_time"}, -1},
+      {nlohmann::json::object(), "_over_larger_tau", {"pinch_time"}, 0, 4}};
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
   experiment.parameters = {{"end_time", time_steps.end_time}, {"largest_tau", time_steps.largest}};

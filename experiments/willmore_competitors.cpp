@@ -182,6 +182,9 @@ int main(int argc, char** argv) {
   experiment.grid.labels = {"surface", "flow", "degree"};
   const std::string why = "all schemes run with backward Euler steps on generated meshes";
   experiment.grid.refused = {{"mesh", why}, {"bdf", why}, {"start", why}};
+  experiment.comparisons = {{{{"flow", "willmore"}},
+                             "_over_kll21",
+                             {"distance", "x_nodal_H1", "kappa_energy_excess", "worst_angle"}}};
   experiment.steps = time_steps;
   experiment.cost = cost;
   experiment.parameters = {{"largest_tau", largest_tau},
