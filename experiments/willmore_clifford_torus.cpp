@@ -136,6 +136,7 @@ int main(int argc, char** argv) {
       {"F", {"extrapolated", "implicit"}, "F(x, u) w of (3.5a): extrapolated | implicit in w"},
       {"theta", {"no", "yes"}, "the correction (3.7)"}};
   experiment.grid.labels = {"run", "triangulation", "F", "theta", "bdf"};
+  experiment.comparisons = {{{{"triangulation", "graded"}}, "_over_graded", {"x_nodal_H1"}}};
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
   experiment.parameters = {{"major", major}, {"minor", minor}, {"end_time", time_steps.end_time}};

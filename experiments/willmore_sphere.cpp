@@ -145,6 +145,8 @@ int main(int argc, char** argv) {
       {"projection", {"none", "projected"}, "of nu_h and z_h after each step"},
       {"theta", {"no", "yes"}, "the correction (3.7)"}};
   experiment.grid.labels = {"run", "flow", "projection", "theta"};
+  experiment.comparisons = {
+      {{{"projection", "projected"}}, "_over_projected", {"largest_deviation_of_radius", "willmore_excess"}}};
   experiment.steps = time_steps;
   experiment.cost = cost;
   experiment.parameters = {{"end_time", 1}};
