@@ -9,7 +9,8 @@
 //
 // Writes:       results/paper/mcf_dumbbell.{json,csv,tex}, from which plots/mcf_dumbbell.py draws
 //               figures/kll19/fig13_3 .. fig13_6, and the surfaces of each run as
-//               results/paper/cells/mcf_dumbbell/CELL/surfaces.pvd (ParaView)
+//               results/paper/cells/mcf_dumbbell/CELL/surfaces.pvd (ParaView), and singular.vtu beside it,
+//               the surface at which the run stops: the extrapolated one where that is already degenerate
 //
 // The dumbbell {x1² + x2² + 2 x3² (x3² - 199/200) = 0.04} moves by v = -H nu until its neck pinches, at T* =
 // 0.082233 (reference/independent/dumbbell_axisymmetric.json). The methods are Dziuk's scheme (3.6), (5.1),
@@ -31,13 +32,14 @@
 #include "solver/flows/dziuk_flow.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/mesh/write_vtu.hpp"
 
 namespace {
 
 using namespace esfem;
 
 const HalvedSteps time_steps{0.12, 0.003};
-const std::vector<double> snapshot_times = {0.03, 0.06, 0.072};
+const std::vector<double> snapshot_times = {0.03, 0.06, 0.072, 0.075, 0.078, 0.084};
 
 /// Variants of (5.1).
 const std::map<std::string, MeanCurvatureFlow::Variant> variants = {
@@ -128,6 +130,30 @@ std::map<std::string, double> values(const Series& series) {
   return list;
 }
 
+/// A scheme that keeps the surface at which it becomes singular: the extrapolated one where that is already
+/// degenerate, otherwise the computed one.
+template <class Scheme>
+struct KeepsSingularSurface {
+  using State = typename Scheme::State;
+  Scheme scheme;
+  double t = 0;
+  Field x = {};
+  bool extrapolated = false;
+
+  void step(const BdfStep<State>& step, State& next) {
+    next.x.resize(0, 3);
+    try {
+      scheme.step(step, next);
+    } catch (const SingularityError&) {
+      t = step.t;
+      x = next.x;
+      extrapolated = x.size() == 0;
+      if (extrapolated) step.extrapolate(&State::x, x);
+      throw;
+    }
+  }
+};
+
 void run(const Choice& choice, Row& row, const std::string& folder) {
   // 1. The initial surface and the finite element space on it; that of BGN for P1 is lumped.
   const std::string& flow = choice["flow"];
@@ -145,7 +171,12 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
     record_node_density(space.elements(), state.x, recorder.series());
   };
   const auto go = [&](auto scheme, const auto& start) {
-    row.status = run_to_end([&] { integrate(scheme, steps, start, record); }, recorder);
+    KeepsSingularSurface<decltype(scheme)> flow_to_pinch{std::move(scheme)};
+    row.status = run_to_end([&] { integrate(flow_to_pinch, steps, start, record); }, recorder);
+    if (folder.empty() || flow_to_pinch.x.size() == 0) return;
+    write_vtu(space.degree(), mesh.elements, flow_to_pinch.x, {}, {}, folder + "/singular.vtu");
+    row.more["singular_surface"] = {
+        {"t", flow_to_pinch.t}, {"file", "singular.vtu"}, {"extrapolated", flow_to_pinch.extrapolated}};
   };
   if (flow == "bgn") {
     go(BgnFlow(space), bgn_state_on(space, mesh.nodes));

@@ -11,20 +11,22 @@ import os
 from dataclasses import dataclass
 
 import numpy as np
+from matplotlib import ticker
 from matplotlib.figure import Figure
 
 import style
 import time_series
 from script import run
 from snapshots import Snapshots, surface_grid
-from surfaces import draw_surface, extent, read_surface, view
+from surfaces import draw_surface, extent, read_surface, smallest_angles, view
 from table import TableError, has_series, label_of, series
 
 REFERENCE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "reference", "independent",
                          "dumbbell_axisymmetric.json")
 STEM = "mcf_dumbbell"
 PAPER_TAU = 0.003
-TIMES = (0, 0.03, 0.06, 0.072)  # of Figure 13.3, before the last surface of each run
+TIMES = (0, 0.03, 0.06, 0.072, 0.075, 0.078, 0.084, 0.09)  # of Figure 13.3, up to and beyond the pinch
+SMALL_ANGLE = 15  # degrees: elements with a smaller one are orange
 ZOOM = 0.07  # where the blow-up begins
 
 LABELS = {"dziuk": "Dziuk", "kll": "(5.1)", "kll_normalised": r"(5.1), $\nu_h$ normalised",
@@ -40,8 +42,9 @@ LINES = {"dziuk": {"color": style.VERMILLION, "linestyle": style.DASHES["dashed"
          "bgn": {"color": style.PURPLE, "linestyle": style.DASHES["dotted"]},
          "bgn_p1": {"color": "#8F4B73", "linestyle": style.DASHES["sparse"]},
          "kll_interpolated": {"color": "#555555", "linestyle": (0, (3, 2.5))}}
-for line in LINES.values():
-    line["linewidth"] = 1.15
+for line, marker in zip(LINES.values(), ("o", "s", "^", "v", "D", "p", "*", "x", "<")):
+    line.update(linewidth=1.15, marker=marker, markersize=5 if marker == "*" else 3.6, markerfacecolor="white",
+                markeredgewidth=0.8)
 REFERENCE_LINE = {"color": "black", "linewidth": 0.7}
 STARTS = {"cascade": "first step by backward Euler", "exact": "exact starting values"}
 
@@ -126,29 +129,46 @@ def _setting(rows, candidates, tau, bgn_tau):
 def surfaces_figure(setting, methods, folder):
     """A grid of surfaces, a column for each method that has snapshots, a row for each time; None without any.
 
-    One scale for all panels. The last row shows the last surface of each run, at its own time.
+    One scale for all panels. The last panel of a run that becomes singular is the surface at which it stops.
     """
     found = {method: Snapshots(setting.runs[method], folder, STEM) for method in methods if method in setting.runs}
     found = {method: snapshots for method, snapshots in found.items() if snapshots.files}
     if not found:
         return None
-    cells = [[snapshots.at(t) for snapshots in found.values()] for t in TIMES]
-    cells.append([snapshots.last() for snapshots in found.values()])
-    labels = [f"$t = {t:g}$" for t in TIMES] + ["last"]
+    columns = [_surfaces_at(TIMES, setting.runs[method], snapshots) for method, snapshots in found.items()]
+    rows = [(t, files) for t, *files in zip(TIMES, *columns) if any(files)]
     rotation = view(18)
-    surfaces = [[file and read_surface(file[1]) for file in files] for files in cells]
+    surfaces = [[file and read_surface(file[1]) for file in files] for _, files in rows]
     boxes = [[surface and extent(surface, rotation) for surface in row] for row in surfaces]
-    shown = [i for i, row in enumerate(boxes) if any(row)]
-    figure, grid = surface_grid([boxes[i] for i in shown], [labels[i] for i in shown],
-                                 [LABELS[method] for method in found], setting.heading(found))
-    for i, axes_row in zip(shown, grid):
-        for axes, file, surface in zip(axes_row, cells[i], surfaces[i]):
+    notes = [rf"Orange: elements with an angle below {SMALL_ANGLE}°. A column ends with the surface at which its run "
+             "stops: the computed one, or the one", "extrapolated for the next step, where that is already degenerate."]
+    figure, grid = surface_grid(boxes, [f"$t = {t:g}$" for t, _ in rows], [LABELS[method] for method in found],
+                                setting.heading(found), foot=time_series.LINE * len(notes))
+    for axes_row, (_, files), surface_row in zip(grid, rows, surfaces):
+        for axes, file, surface in zip(axes_row, files, surface_row):
             if surface is None:
                 continue
-            draw_surface(axes, surface, rotation)
-            if i == len(TIMES):
-                axes.text(0.5, 0, f"$t = {file[0]:.5g}$", transform=axes.transAxes, ha="center", va="top", fontsize=8)
+            draw_surface(axes, surface, rotation, marked=smallest_angles(surface) < SMALL_ANGLE)
+            if file[2]:
+                axes.text(0.5, 0, file[2], transform=axes.transAxes, ha="center", va="top", fontsize=8)
+    time_series.add_notes(figure, notes)
     return figure
+
+
+def _surfaces_at(times, row, snapshots):
+    """For each time (t, path, what is written below) or None; the surface at which the run stops has the next time."""
+    last = row.get("singular_surface")
+    found = []
+    for before, t in zip((-1, *times), times):
+        file = snapshots.at(t)
+        if file:
+            found.append((*file, ""))
+        elif last and before + 1e-9 < last["t"] <= t + 1e-9:
+            kind = "extrapolated, " if last["extrapolated"] else ""
+            found.append((last["t"], snapshots.path(last["file"]), f"stops: {kind}$t = {last['t']:.5g}$"))
+        else:
+            found.append(None)
+    return found
 
 
 # --- Figure 13.4: the neck
@@ -228,7 +248,7 @@ def _end(settings, name, pinch):
 
 
 def curvature_figure(settings, notes):
-    """Figure 13.5: max H of all methods, its blow-up beside the axisymmetric reference, and below the worst angle.
+    """Figure 13.5: max H of all methods, its blow-up beside the axisymmetric reference, and below the smallest angle.
 
     None without such series.
     """
@@ -254,14 +274,18 @@ def curvature_figure(settings, notes):
         _draw_runs(axes, setting, "worst_angle", (0, end))
         axes.set_xlim(0, 1.02 * end)
         axes.set_ylim(0, None)
-    grid[-1][0].set_ylabel("worst angle (degrees)", labelpad=4)
+    grid[-1][0].set_ylabel("smallest angle (degrees)", labelpad=4)
     return figure
+
+
+KINDS = {"max": ("maximum", style.DASHES["solid"]), "min": ("minimum", style.DASHES["dashed"])}
 
 
 def normals_figure(settings, notes):
     """Figure 13.6: min and max of the length of the computed normal, and their blow-up; None without such series."""
-    names = ("min_nu", "max_nu")
-    legend = _legend(settings, names)
+    names = [f"{kind}_nu" for kind in KINDS]
+    legend = {label: {**line, "linestyle": "none"} for label, line in _legend(settings, names).items()}
+    legend |= {label: {"color": "black", "linestyle": dashes, "linewidth": 1.15} for label, dashes in KINDS.values()}
     settings = [setting for setting in settings if _legend([setting], names)]
     if not settings:
         return None
@@ -269,17 +293,43 @@ def normals_figure(settings, notes):
     end = _end(settings, "max_nu", reference_curvature(ZOOM)[2])
     for setting, (whole, blow_up) in zip(settings, grid):
         for axes, start in ((whole, 0), (blow_up, ZOOM)):
-            values = np.concatenate([_draw_runs(axes, setting, name, (start, end)) for name in names])
-            time_series.scale(axes, values, logarithmic=max(values, default=1) > 10)
+            values = np.concatenate([_draw_runs(axes, setting, f"{kind}_nu", (start, end), linestyle=dashes)
+                                     for kind, (_, dashes) in KINDS.items()])
+            _scale_about_one(axes, values)
         _limit_times(whole, blow_up, end)
         whole.set_ylabel(r"$\min\,|\nu_h|$ and $\max\,|\nu_h|$", labelpad=2)
     return figure
 
 
-def _draw_runs(axes, setting, name, span):
-    """Draws a quantity of all runs; returns the values in `span`."""
-    return np.concatenate([time_series.draw_series(axes, row, name, LINES[method], span)
-                           for method, row in setting.runs.items()])
+NEAR_ONE = 0.02  # lengths closer to one are on a linear scale, others on a logarithmic one
+
+
+def _scale_about_one(axes, lengths):
+    """Fits the vertical axis to lengths about one, and spreads those close to one."""
+    def spread(length):
+        return np.arcsinh((length - 1) / NEAR_ONE)
+
+    axes.set_yscale("function", functions=(spread, lambda y: 1 + NEAR_ONE * np.sinh(y)))
+    low, high = spread(min(lengths, default=1)) - 0.3, spread(max(lengths, default=1)) + 0.3
+    axes.set_ylim(*(1 + NEAR_ONE * np.sinh([low, high])))
+    ticks = [0.3, 0.5, 0.8, 0.9, 0.95, 0.98, 1, 1.02, 1.05, 1.1, 1.2, 1.5, 2, 3, 5]
+    axes.set_yticks([tick for tick in ticks if low <= spread(tick) <= high])
+    axes.yaxis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_locator(ticker.NullLocator())
+
+
+def _draw_runs(axes, setting, name, span, **look):
+    """Draws a quantity of all runs; returns the values in `span`.
+
+    Marks of lines that coincide lie side by side, and those of runs that end early on top.
+    """
+    values = []
+    for k, (method, row) in enumerate(sorted(setting.runs.items(), key=lambda run: -run[1]["series"]["t"][-1])):
+        inside = np.flatnonzero((np.array(row["series"]["t"]) >= span[0]) & (np.array(row["series"]["t"]) <= span[1]))
+        every = max(len(inside) // 4, 1)
+        marks = [*inside[k * every // len(setting.runs)::every], *inside[-1:]]
+        values.append(time_series.draw_series(axes, row, name, {**LINES[method], "markevery": list(marks), **look}, span))
+    return np.concatenate(values)
 
 
 def _limit_times(whole, blow_up, end):

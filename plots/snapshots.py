@@ -19,13 +19,17 @@ class Snapshots:
 
     def __init__(self, row, folder, stem):
         """`folder` is the table's, where cells/`stem`/CELL/ has the files."""
-        cell = os.path.join(folder, "cells", stem, str(row.get("cell")))
+        self.folder = os.path.join(folder, "cells", stem, str(row.get("cell")))
         try:
-            self.files = sorted((float(entry["t"]), os.path.join(cell, entry["file"]))
+            self.files = sorted((float(entry["t"]), self.path(entry["file"]))
                                 for entry in row.get("snapshots") or [])
         except (KeyError, TypeError, ValueError) as error:
             raise TableError(f"{row.get('cell', '?')}: snapshots are no list of {{t, file}}") from error
         self.tau = row["tau"]
+
+    def path(self, file):
+        """Of a file of the run."""
+        return os.path.join(self.folder, file)
 
     def at(self, t, tau=None):
         """The snapshot closest to t, at most half a step `tau` (the run's own by default) away, or None."""

@@ -9,13 +9,14 @@ from dataclasses import dataclass
 import meshio
 import numpy as np
 from matplotlib.collections import PolyCollection
-from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.colors import LinearSegmentedColormap, to_rgb
 
+import style
 from table import TableError
 
 LIGHT = np.array([-0.35, 0.50, 0.79])  # from the left, from above, from the front
 EDGE_TONE = 0.1
-RIM = 0.2  # of a facet, in points
+RIM, MARKED_RIM = 0.2, 0.7  # of a facet, in points; thin elements that are marked stay visible
 SHADE_OF_PLAIN = 0.75  # of facets in full light: a field's colour shows unchanged there
 TONES = 96  # few colours make small files
 # Tones are drawn in grey and coloured afterwards, from dark (edges) over blue (faces) to white (highlights).
@@ -153,8 +154,9 @@ def shade(normals):
 
 
 def _colour_tones(image, _dpi):
-    """The grey picture in the colours of RAMP; image is (height, width, 4). The seams between facets become opaque."""
-    image[..., :3] = RAMP(image[..., 0])[..., :3]
+    """A picture (height, width, 4) with its greys in the colours of RAMP. The seams between facets become opaque."""
+    grey = np.ptp(image[..., :3], axis=2) < 0.02
+    image[grey, :3] = RAMP(image[grey, 0])[:, :3]
     image[..., 3][image[..., 3] > 0.8] = 1
     return image, 0, 0
 
@@ -172,11 +174,22 @@ def facet_values(surface, values, n):
     return (values[surface.triangles] @ shape_functions(middles, surface.triangles.shape[1]).T).ravel()
 
 
-def draw_surface(axes, surface, rotation, *, facets_per_side=3, linewidth=0.2, window=None, colours=None):
+def smallest_angles(surface):
+    """The smallest angle of each flat triangle between the corners of an element, in degrees: (E,)."""
+    corners = surface.points[surface.triangles[:, :3]]
+    sides = np.roll(corners, -1, axis=1) - corners
+    sides /= np.linalg.norm(sides, axis=2, keepdims=True)
+    cosines = -np.einsum("eki,eki->ek", sides, np.roll(sides, 1, axis=1))
+    return np.degrees(np.arccos(np.clip(cosines.max(axis=1), -1, 1)))
+
+
+def draw_surface(axes, surface, rotation, *, facets_per_side=3, linewidth=0.2, window=None, colours=None,
+                 marked=None):
     """Draws the surface with its element edges into `axes`, in the surface's units.
 
     `linewidth` of the edges in points, 0: none. `window` (left, right, low, high): draws no facets that are out of it.
-    `colours`: (nodal values, ScalarMappable) for a surface coloured by a field; else it is blue.
+    `colours`: (nodal values, ScalarMappable) for a surface coloured by a field; else it is blue, but the elements
+    `marked` (E,) are orange, without edges.
     The picture is a raster image in a PDF, too.
     """
     split = facets(surface, rotation, facets_per_side)
@@ -189,7 +202,8 @@ def draw_surface(axes, surface, rotation, *, facets_per_side=3, linewidth=0.2, w
     depth = shown[..., 2].mean(axis=1)
 
     sizes = np.linalg.norm(split.corners - np.roll(split.corners, 1, axis=1), axis=2).max(axis=1)
-    seen = np.flatnonzero(front[split.edge_facet]) if linewidth > 0 else np.empty(0, int)
+    marks = np.repeat(marked, facets_per_side**2) if marked is not None else np.zeros(len(front), bool)
+    seen = np.flatnonzero((front & ~marks)[split.edge_facet]) if linewidth > 0 else np.empty(0, int)
     seen = seen[np.unique(split.edge_key[seen], axis=0, return_index=True)[1]] if len(seen) else seen
     edges = split.edges[seen]
     # An edge is painted after the facets that it belongs to, whose middles may be nearer by their size.
@@ -200,10 +214,13 @@ def draw_surface(axes, surface, rotation, *, facets_per_side=3, linewidth=0.2, w
     tones = np.concatenate([shade(split.normals[front]), np.full(len(edges), EDGE_TONE)])[order]
     # A facet has a rim of its own colour: else the background shines through between two of them.
     widths = RIM  # one number is drawn faster than many
-    if linewidth != RIM:
-        widths = np.concatenate([np.full(len(shown), RIM), np.full(len(edges), linewidth)])[order]
+    if linewidth != RIM or marked is not None:
+        rims = np.where(marks[front], MARKED_RIM, RIM)
+        widths = np.concatenate([rims, np.full(len(edges), linewidth)])[order]
     if colours is None:
         faces = np.tile(tones[:, None], 3)
+        is_marked = np.concatenate([marks[front], np.zeros(len(edges), bool)])[order]
+        faces[is_marked] = np.clip(0.5 + 0.7 * faces[is_marked], 0, 1) * to_rgb(style.VERMILLION)
     else:
         values, mappable = colours
         field = mappable.to_rgba(facet_values(surface, values, facets_per_side)[front])[:, :3]

@@ -31,7 +31,8 @@ def dumbbell_row(method, start="cascade", tau=0.003, level=1, end=0.078, **chang
            "h": 0.18 / 2**level, "nodes": 3002 if level == 0 else 10522, "tau": tau, "steps": len(t) - 1, "errors": {},
            "status": f"singular at t = {end:g} (step {len(t)}): why", "values": {"pinch_time": end},
            "series": {name: values.tolist() for name, values in columns.items()},
-           "snapshots": [{"t": t[n], "file": f"surfaces_{n:04d}.vtu"} for n in range(0, len(t), 2)]}
+           "snapshots": [{"t": t[n], "file": f"surfaces_{n:04d}.vtu"} for n in range(0, len(t), 2)],
+           "singular_surface": {"t": end + tau, "file": "singular.vtu", "extrapolated": flow == "dziuk"}}
     return {**row, **changes}
 
 
@@ -52,7 +53,7 @@ def write_snapshots(table, folder):
     for row in table["rows"]:
         cell = os.path.join(folder, "cells", "mcf_dumbbell", row["cell"])
         os.makedirs(cell, exist_ok=True)
-        for entry in row["snapshots"]:
+        for entry in [*row["snapshots"], row["singular_surface"]]:
             points = ball.points * [0.3, 0.3, 1] * (1 - 4 * entry["t"])
             meshio.write(os.path.join(cell, entry["file"]), meshio.Mesh(points, [("triangle6", ball.triangles)]))
 
@@ -109,18 +110,18 @@ class Dumbbell(unittest.TestCase):
     def test_all_figures_are_there(self):
         self.assertEqual(list(self.figures), [f"kll19/fig13_{name}" for name in ("3", "3_good_start", "4", "5", "6")])
 
-    def test_the_surfaces_have_one_scale_and_a_panel_for_each_time_and_method(self):
-        for name, columns in (("kll19/fig13_3", 3), ("kll19/fig13_3_good_start", 4)):
+    def test_the_surfaces_have_one_scale_and_a_panel_for_each_time_and_method_until_it_stops(self):
+        for name, panels, stops in (
+                ("kll19/fig13_3", 16, ["stops: extrapolated, $t = 0.075$", "stops: $t = 0.078$", "stops: $t = 0.081$"]),
+                ("kll19/fig13_3_good_start", 28, ["stops: extrapolated, $t = 0.0795$", *3 * ["stops: $t = 0.0795$"]])):
             figure = self.figures[name]
-            self.assertEqual(sum(bool(axes.collections) for axes in figure.axes), 5 * columns)
+            self.assertEqual(sum(bool(axes.collections) for axes in figure.axes), panels)
             scales = [axes.get_position().size * figure.get_size_inches() / [np.ptp(axes.get_xlim()),
                                                                              np.ptp(axes.get_ylim())]
                       for axes in figure.axes]
             np.testing.assert_allclose(scales, np.full_like(scales, scales[0][0]))
             self.assertLess(figure.get_size_inches()[1], 10)
-            own_times = [axes.texts[0].get_text() for axes in figure.axes if axes.texts]
-            self.assertEqual(own_times, ["$t = 0.072$", "$t = 0.072$", "$t = 0.078$"] if columns == 3
-                             else ["$t = 0.078$"] * 4)
+            self.assertEqual([axes.texts[0].get_text() for axes in figure.axes if axes.texts], stops)
 
     def test_the_neck_says_method_time_and_radius(self):
         titles = [axes.get_title(loc="left") for axes in self.figures["kll19/fig13_4"].axes]
@@ -140,10 +141,27 @@ class Dumbbell(unittest.TestCase):
                 method = next((m for m, text in mcf_dumbbell.LABELS.items() if text == label), None)
                 self.assertEqual(colour, mcf_dumbbell.LINES[method]["color"] if method else "black")
             colours = {line.get_color() for axes in figure.axes for line in lines_of(axes)}
-            self.assertEqual(colours, set(legend.values()))
-        styles = [(str(line["color"]), str(line["linestyle"])) for line in mcf_dumbbell.LINES.values()]
+            self.assertEqual(colours | {"black"}, set(legend.values()))
+        styles = [(str(line["color"]), str(line["linestyle"]), line["marker"]) for line in mcf_dumbbell.LINES.values()]
         for kind in zip(*styles):
             self.assertEqual(len(set(kind)), len(styles))
+
+    def test_runs_that_end_early_lie_on_top_and_every_line_has_a_mark_at_its_end(self):
+        for axes in self.figures["kll19/fig13_5"].axes:
+            lines = [line for line in lines_of(axes) if line.get_color() != "black"]
+            ends = [line.get_xdata()[-1] for line in lines]
+            self.assertEqual(ends, sorted(ends, reverse=True))
+            for line in lines:
+                self.assertEqual(line.get_markevery()[-1], len(line.get_xdata()) - 1)
+
+    def test_minimum_and_maximum_of_the_normal_have_two_line_styles_and_lengths_near_one_are_spread(self):
+        for axes in self.figures["kll19/fig13_6"].axes:
+            lines = lines_of(axes)
+            self.assertEqual([line.get_linestyle() for line in lines], ["-"] * (len(lines) // 2) + ["--"] * (len(lines) // 2))
+            near, far = (np.diff(axes.transData.transform([(0, a), (0, b)])[:, 1])[0] for a, b in ((1, 1.02), (1.5, 1.52)))
+            self.assertGreater(near, 10 * far)
+            values = np.concatenate([line.get_ydata() for line in lines])
+            self.assertTrue(axes.get_ylim()[0] < values.min() and values.max() < axes.get_ylim()[1])
 
     def test_the_reference_goes_through_its_rows(self):
         with open(mcf_dumbbell.REFERENCE, encoding="utf-8") as file:

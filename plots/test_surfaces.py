@@ -123,6 +123,24 @@ class Surfaces(unittest.TestCase):
         self.assertTrue(np.all(np.diff(coloured[0, :, :3] @ (0.299, 0.587, 0.114)) >= 0))
         self.assertEqual(coloured[0, 45, 3], 1)
 
+    def test_smallest_angles_are_those_between_the_corners(self):
+        points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [2, 0.1, 0.0]])
+        angles = surfaces.smallest_angles(Surface(points, np.array([[0, 1, 2], [0, 3, 1]]), {}))
+        np.testing.assert_allclose(angles, [45, math.degrees(math.atan(0.1) - math.atan(0.05))])
+
+    def test_marked_elements_are_orange_and_have_no_edges_of_their_own(self):
+        ball = sphere(1)
+        for marked, is_grey in ((np.zeros(len(ball.triangles), bool), True), (np.ones(len(ball.triangles), bool), False)):
+            axes = Figure().add_subplot()
+            surfaces.draw_surface(axes, ball, view(0), marked=marked)
+            colours = axes.collections[0].get_facecolor()
+            self.assertEqual((np.ptp(colours[:, :3], axis=1) == 0).all(), is_grey)
+            self.assertEqual((np.ptp(colours[:, :3], axis=1) > 0.3).all(), not is_grey)
+        image = np.array([[[0.5, 0.5, 0.5, 1], [0.8, 0.4, 0.0, 1]]])
+        coloured = surfaces._colour_tones(image.copy(), 100)[0]
+        self.assertGreater(np.ptp(coloured[0, 0, :3]), 0.1)
+        np.testing.assert_array_equal(coloured[0, 1], image[0, 1])
+
     def test_snapshots_are_read(self):
         ball = sphere(1)
         with tempfile.TemporaryDirectory() as folder:
