@@ -64,13 +64,14 @@ std::vector<Block> preset(bool paper) {
   const int coarse = paper ? 1 : 0;
   std::vector<Block> blocks = {
       {{"degree", 2}, {"bdf", 4}, {"level", range(0, 2)}, {"step", 4}},
-      {{"run", "interpolation"}, {"level", range(0, 3)}, {"step", paper ? range(4, 5) : range(4, 4)}},
+      {{"run", "interpolation"}, {"level", range(0, 3)}, {"step", paper ? range(1, 5) : range(4, 4)}},
       {{"run", "order"}, {"bdf", 1}, {"level", coarse}, {"step", range(5, 7)}},
       {{"run", "order"}, {"bdf", range(2, 5)}, {"level", coarse}, {"step", range(3, 5)}},
       {{"run", "derivative"}, {"level", range(1, 3)}, {"step", 3}},
       {{"run", "printed"}, {"bdf", 1}, {"step", range(3, 5)}}};
   if (paper) {
     blocks.push_back({{"bdf", {1, 3}}, {"level", range(0, 4)}, {"step", range(1, smallest_step)}});
+    blocks.push_back({{"run", "interpolation"}, {"bdf", 1}, {"level", range(0, 3)}, {"step", range(1, 5)}});
     blocks.push_back({{"bdf", {2, 4, 5}}, {"level", range(0, 3)}});
   } else {
     blocks.push_back({{"bdf", 1}, {"level", range(1, 3)}, {"step", range(3, 5)}});

@@ -29,9 +29,9 @@ FLOWS = {
 NAMES = {"nu": r"\nu"}
 # Heading, run, norm, variable, and the order that is expected of degree k and BDF q.
 GRIDS = (
-    (r"order in $\tau$, $H^1$ (expected $q$)", "time", "nodal_H1", "tau", lambda k, q: q),
-    ("order in $h$, $H^1$ (expected $k$)", "space", "lifted_H1", "h", lambda k, q: k),
-    ("order in $h$, $L^2$ (expected $k+1$)", "space", "lifted_L2", "h", lambda k, q: k + 1),
+    (r"order in $\tau$, nodal $H^1$ (expected $q$)", "time", "nodal_H1", "tau", lambda k, q: q),
+    ("order in $h$, lifted $H^1$ (expected $k$)", "space", "lifted_H1", "h", lambda k, q: k),
+    ("order in $h$, lifted $L^2$ (expected $k+1$)", "space", "lifted_L2", "h", lambda k, q: k + 1),
 )
 # From one order too little to one too much; the middle is white, and lightness falls faster to the side of too little.
 DEVIATION = matplotlib.colors.LinearSegmentedColormap.from_list(

@@ -2,7 +2,6 @@
 """Convergence figures: errors against step size or mesh width, log-log, with reference slopes."""
 import functools
 import math
-import textwrap
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,9 +15,12 @@ ROUND_OFF = 1e-14  # smaller errors are noise, and zero has no logarithm
 
 QUANTITIES = {"x": "surface $x$", "v": "velocity $v$", "nu": r"normal $\nu$", "H": "mean curvature $H$",
               "u": "solution $u$", "w": "chemical potential $w$", "V": "normal velocity $V$", "z": "$z$"}
-NORMS = {"nodal_L2": "$L^\\infty(L^2)$", "nodal_H1": "$L^\\infty(H^1)$", "nodal_H1_semi": "$L^\\infty(H^1)$ seminorm",
+NORMS = {"nodal_L2": "$L^\\infty(L^2)$, nodal", "nodal_H1": "$L^\\infty(H^1)$, nodal",
+         "nodal_H1_semi": "$L^\\infty(H^1)$ seminorm, nodal",
          "lifted_L2": "$L^\\infty(L^2)$, lifted", "lifted_H1": "$L^\\infty(H^1)$, lifted",
          "lifted_H1_semi": "$L^\\infty(H^1)$ seminorm, lifted"}
+# The same without the maximum over time.
+NORMS_AT_A_TIME = {norm: name.replace(r"L^\infty(", "", 1).replace(")", "", 1) for norm, name in NORMS.items()}
 AXES = {"tau": r"step size $\tau$", "h": "mesh width $h$"}
 SYMBOLS = {"tau": r"\tau", "h": "h"}
 
@@ -44,15 +46,13 @@ class Panel:
     """One panel: its curves against `variable` ("tau" or "h").
 
     A dashed line shows the theory's `order` of all curves, a dotted one the highest order of `faster` that some curve
-    follows (slope within 0.35). With a `limit` (value, label) the panel does not show errors but a quantity that tends
-    to it: a linear vertical axis, the limit as a dashed line, no orders.
+    follows (slope within 0.35).
     """
     title: str
     curves: list
     variable: str
     order: float = None
     faster: tuple = ()
-    limit: tuple = None
 
 
 def curves(rows, quantity, norm, variable, group=None):
@@ -138,8 +138,7 @@ def draw_panels(panels, y_label, notes=(), columns=None):
             axes.plot(*curve.points.T, **line_style)
         if not any(len(curve.points) for curve in panel.curves):
             axes.yaxis.set_visible(False)
-            reason = "nothing to show" if panel.limit else f"all errors below {_power(ROUND_OFF)}"
-            axes.text(0.5, 0.5, reason, transform=axes.transAxes, ha="center")
+            axes.text(0.5, 0.5, f"all errors below {_power(ROUND_OFF)}", transform=axes.transAxes, ha="center")
     _scale_and_reference(all_axes, panels)
     return figure
 
@@ -150,18 +149,19 @@ def _shows_round_off(rows, quantity, norm):
     return any(isinstance(error, (int, float)) and error < ROUND_OFF for error in errors)
 
 
-def failure_notes(rows, skipped):
-    """The lines under a figure: what is not shown, and why. `skipped`: {quantity: how many of its errors}."""
+def failure_notes(rows, skipped, name=None):
+    """The lines under a figure: what is not shown, and why. `skipped`: {quantity: how many of its errors}.
+
+    `name(row)`: what tells runs apart beside mesh and step size.
+    """
     notes = []
     failed = [row for row in rows if not succeeded(row)]
     if failed:
-        names = [str(row.get("cell", "?")) for row in failed]
-        more = f" and {len(names) - 6} more" if len(names) > 6 else ""
-        notes.append(f"{len(failed)} of {len(rows)} runs failed: {', '.join(names[:6])}{more}.")
+        notes.append(f"{len(failed)} of {len(rows)} runs failed: {style.in_words(failed, name)}.")
     if any(skipped.values()):
         counts = ", ".join(f"{count} of {quantity}" for quantity, count in skipped.items() if count)
         notes.append(f"Errors not shown (missing or below {_power(ROUND_OFF)}): {counts}.")
-    return [line for note in notes for line in textwrap.wrap(note, 125)]
+    return [line for note in notes for line in style.wrap(note)]
 
 
 def _power(value):
@@ -220,29 +220,14 @@ def _draw_legend(axes, labels, columns, anchor):
 
 
 def _scale_and_reference(all_axes, panels):
-    """Sets the ranges of all axes, then draws limits and reference slopes."""
+    """Sets the ranges of all axes, then draws reference slopes."""
     x = [np.log10(np.concatenate([curve.points[:, 0] for curve in panel.curves])) for panel in panels]
     x_ranges = [_x_range(np.concatenate([xs for xs, other in zip(x, panels) if other.variable == panel.variable]))
                 for panel in panels]
     for axes, x_range in zip(all_axes, x_ranges):
         axes.set_xlim(10**x_range)
         style.log_ticks(axes.xaxis, *10**x_range, _size_in_points(axes)[0])
-    errors = [of_panel for of_panel in zip(all_axes, panels, x_ranges) if not of_panel[1].limit]
-    if errors:
-        _scale_errors(*zip(*errors))
-    for axes, panel in zip(all_axes, panels):
-        if panel.limit:
-            _scale_to_limit(axes, panel)
-
-
-def _scale_to_limit(axes, panel):
-    limit, label = panel.limit
-    values = np.append(np.concatenate([curve.points[:, 1] for curve in panel.curves]), limit)
-    room = 0.1 * max(np.ptp(values), 1e-3 * abs(limit))
-    axes.set_yscale("linear")
-    axes.set_ylim(values.min() - room, values.max() + room)
-    axes.ticklabel_format(axis="y", useOffset=False)
-    style.limit_line(axes, limit, label)
+    _scale_errors(all_axes, panels, x_ranges)
 
 
 def _scale_errors(all_axes, panels, x_ranges):
@@ -264,10 +249,10 @@ def _scale_errors(all_axes, panels, x_ranges):
 
 
 def _x_range(x):
-    """Ends of an axis that shows all of x, and default ends without any x."""
+    """Ends of an axis that shows all of x with its markers, and default ends without any x."""
     if not len(x):
         return np.array([-1.0, 0.0])
-    pad = 0.06 * np.ptp(x) if np.ptp(x) > 0 else 0.3
+    pad = 0.08 * np.ptp(x) if np.ptp(x) > 0 else 0.3
     return np.array([x.min() - pad, x.max() + pad])
 
 

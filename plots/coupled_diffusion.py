@@ -81,7 +81,8 @@ def difference_figure(rows):
         panels.append(Panel(f"time, {style.nodes_label(shared[0]['nodes'])}", methods, "tau"))
     notes = [VARIANTS, *_seconds_note(main, bdf)]
     skipped = {"the difference": curves(rows, *DIFFERENCE, "tau")[1]}
-    return draw_panels(panels, DIFFERENCE_LABEL, notes + failure_notes(rows, skipped))
+    notes += failure_notes(rows, skipped, lambda row: f"BDF{label_of(row, 'bdf')}")
+    return draw_panels(panels, DIFFERENCE_LABEL, notes)
 
 
 def _finest_shared_mesh(rows):

@@ -8,7 +8,7 @@ discretisation with small steps, always in the nodal counterpart of the norm. Ea
 of its runs ("convergence", "order").
 """
 import style
-from convergence import NORMS, QUANTITIES as NAMES, Panel, curves_of, draw_panels, failure_notes
+from convergence import NORMS, NORMS_AT_A_TIME, QUANTITIES as NAMES, Panel, curves_of, draw_panels, failure_notes
 from script import run
 from table import TableError, label_of, succeeded
 
@@ -90,8 +90,7 @@ def time_figure(rows, norm):
         for line in lines:
             line.order = int(line.label[len("BDF"):])
         panels.append(Panel(NAMES[quantity], lines, "tau"))
-    norm_name = NORMS[norm].replace(r"L^\infty(", "").replace(")", "", 1)
-    return draw_panels(panels, f"error in {norm_name} at $t = 0.2$", failure_notes(rows, skipped))
+    return draw_panels(panels, f"error in {NORMS_AT_A_TIME[norm]}, at $t = 0.2$", failure_notes(rows, skipped))
 
 
 if __name__ == "__main__":

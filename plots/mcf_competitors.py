@@ -35,7 +35,8 @@ def draw(table, norm):
     surfaces = [surface for surface in SURFACES if points[surface]]
     if not surfaces:
         raise TableError(f"no {SECONDS} with errors of x in the norm {norm} of {', '.join(SURFACES)}")
-    yield "gallery/mcf_competitors", _figure(surfaces, points, norm, failure_notes(rows, {}))
+    notes = failure_notes(rows, {}, lambda row: _label(_variant(row)))
+    yield "gallery/mcf_competitors", _figure(surfaces, points, norm, notes)
 
 
 def _variant(row):

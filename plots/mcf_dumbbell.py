@@ -349,7 +349,7 @@ def draw(table, folder):
                  for setting in settings if "kll_normalised" in setting.runs]
     close_ups += [(rf"BGN, $\tau = {setting.runs['bgn']['tau']:.3g}$", setting.runs["bgn"])
                   for setting in settings[-1:] if "bgn" in setting.runs]
-    notes = time_series.failure_notes(rows)
+    notes = time_series.failure_notes(rows, lambda row: LABELS.get(method_of(row), ""))
     if any(row["status"] != "ok" for setting in settings for row in setting.runs.values()):
         notes = ["Lines end at the last step before the run stops as singular.", *notes]
     make = {

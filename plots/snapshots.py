@@ -11,6 +11,7 @@ from surfaces import draw_surface, extent, read_surface
 from table import TableError
 
 LABEL_WIDTH, TITLES, PANEL_GAP, T_LINE, PAGE = 0.26, 0.22, 0.10, 0.17, 8.0  # inches
+LOWEST_ROW = 0.44  # its label needs as much
 STRIP_GAP = 0.08
 
 
@@ -73,7 +74,7 @@ def surface_grid(boxes, labels, titles, heading, *, own_scales=False, foot=0.0):
     heights = np.array([1.02 * max(scale * (box[3] - box[2]) for scale, box in zip(scales, row) if box)
                         for row in boxes])
     shrink = min(1.0, (PAGE - foot) / heights.sum())
-    scales, heights = shrink * scales, shrink * heights
+    scales, heights = shrink * scales, np.maximum(shrink * heights, LOWEST_ROW)
     height = 2 * TITLES + sum(heights) + PANEL_GAP * (len(boxes) - 1) + T_LINE + 0.03 + foot
     figure = Figure(figsize=(style.WIDTH, height))
     figure.text(LABEL_WIDTH / style.WIDTH, 1 - 0.03 / height, heading, va="top")

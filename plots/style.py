@@ -108,6 +108,16 @@ def nodes_label(nodes):
     return "$N = " + f"{nodes:,}".replace(",", "{,}") + "$"
 
 
+def in_words(rows, name=None):
+    """Which runs these are: "N = 342 with τ = 0.2, 0.1; ..". `name(row)` says what else tells them apart."""
+    groups = {}
+    for row in rows:
+        mesh = nodes_label(row["nodes"]) if row.get("nodes") else f"level {row.get('level', 0)}"
+        groups.setdefault(", ".join(filter(None, (name and name(row), mesh))), []).append(f"{row.get('tau', 0):.3g}")
+    texts = [rf"{group} with $\tau$ = {', '.join(taus)}" for group, taus in groups.items()]
+    return "; ".join(texts[:6]) + (f" and {sum(map(len, list(groups.values())[6:]))} more" if len(texts) > 6 else "")
+
+
 def log_ticks(axis, low, high, length):
     """Labels a horizontal logarithmic axis over [low, high], `length` points long, with round numbers.
 

@@ -19,6 +19,8 @@ from table import TableError, has_series, label_of, series
 from willmore import finest
 
 STEM = "surface_diffusion"
+SETTINGS = {"paper": "fixed steps", "unprojected": "fixed steps, no projections", "adaptive": "adaptive steps",
+            "accurate": "small adaptive steps", "relaxed": "adaptive steps, relaxation"}
 TILT = 20
 PICTURES = 6
 VOLUME = "volume, $|V(t) / V(0) - 1|$"
@@ -37,8 +39,8 @@ def draw(table, folder):
         files = evenly(Snapshots(finest(pictured), folder, STEM).files, PICTURES)
         strip = Strip(files, upright_view(read_surface(files[0][1]), TILT), 0.98 * style.WIDTH)
     shown = _selected(shown)
-    yield "gallery/surface_diffusion", _figure(shown, strip, _meshes(shown) + time_series.stopped_notes(shown)
-                                               + time_series.failure_notes(table["rows"]))
+    yield "gallery/surface_diffusion", _figure(shown, strip, _meshes(shown) + time_series.stopped_notes(shown, _name)
+                                               + time_series.failure_notes(table["rows"], _name))
 
 
 def _selected(rows):
@@ -52,6 +54,11 @@ def _selected(rows):
             + [finest(settings[name]) for name in sorted(settings)])
 
 
+def _name(row):
+    setting = label_of(row, "setting", "paper")
+    return SETTINGS.get(setting, setting)
+
+
 def _meshes(rows):
     counts = sorted({row["nodes"] for row in rows})
     return style.wrap(f"{', '.join(map(style.nodes_label, counts))}. Fixed steps of size $\\tau$, adaptive ones at "
@@ -59,11 +66,11 @@ def _meshes(rows):
 
 
 def _figure(rows, strip, notes):
-    labels = [rf"{label_of(row, 'setting', 'paper')}, $\tau = {row['tau']:.3g}$" for row in rows]
+    labels = [rf"{_name(row)}, $\tau = {row['tau']:.3g}$" for row in rows]
     lines = style.line_styles(len(rows))
     above = strip.height + 0.14 if strip else 0.0
     figure, ((left, middle, right),) = time_series.panels([[AREA, VOLUME, ELONGATION]],
-                                                          dict(zip(labels, lines)), notes, above)
+                                                          dict(zip(labels, lines)), notes, above, abreast=3)
     if strip:
         strip.draw(figure, 0.01 * style.WIDTH, figure.get_size_inches()[1] - strip.height - 0.04, facets_per_side=2,
                    linewidth=0.12)

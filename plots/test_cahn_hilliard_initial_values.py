@@ -74,7 +74,7 @@ class InitialValues(unittest.TestCase):
         failed = run_row("ritz_theta", status="failed: why", snapshots=[], cell="lost")
         figure = self.figure([failed, run_row("interpolation")])
         self.assertEqual(len(figure.axes), 6)
-        self.assertIn("1 of 2 runs failed: lost.", texts_of(figure))
+        self.assertIn(r"1 of 2 runs failed: $N = 4{,}098$ with $\tau$ = 0.0125.", texts_of(figure))
 
     def test_what_is_missing_is_named(self):
         printed = {"initial": "interpolation", "constant": "printed"}

@@ -48,7 +48,7 @@ class Energies(unittest.TestCase):
         self.assertEqual([len(line.get_xdata()) for line in lines[:3]], [sum((TIMES > 0) & (TIMES < 31)), 30, 30])
         self.assertEqual(list(lines[3].get_ydata()), [994.3, 763.0, 642.9, 412.4, 275.2, 179.5, 85.571])
         self.assertEqual(len({(line.get_color(), line.get_linestyle()) for line in lines[:3]}), 3)
-        self.assertIn("1 of 4 runs failed: d.", texts_of(figure))
+        self.assertIn("1 of 4 runs failed: level 0 with", texts_of(figure))
 
     def test_a_great_circle_has_the_energy_of_its_tanh_profile(self):
         _, figure = next(cahn_hilliard_pfhub.draw(table_of(ROWS), ""))

@@ -43,7 +43,7 @@ class Convergence(unittest.TestCase):
         for row in table["rows"][:2]:
             row.update(status="failed: degenerate element 12 at step 3", errors={}, h=0, nodes=0)
         figure = convergence_figure(table["rows"], QUANTITIES, "nodal_H1", "tau", order=3)
-        self.assertEqual([text.get_text() for text in figure.texts], ["2 of 40 runs failed: h0_tau0, h0_tau1."])
+        self.assertEqual([text.get_text() for text in figure.texts], [r"2 of 40 runs failed: level 0 with $\tau$ = 0.2, 0.1."])
         self.assertEqual(len(data_lines(figure.axes[0])[0].get_xdata()), 6)
 
     def test_errors_without_a_logarithm_are_left_out_and_counted(self):

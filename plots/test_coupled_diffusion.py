@@ -109,8 +109,8 @@ class CoupledDiffusion(unittest.TestCase):
                 row.update(status="failed: why", errors={}, h=0, nodes=0)
         figures = dict(coupled_diffusion.draw(table, "lifted"))
         for n in range(1, 5):
-            self.assertIn("1 of 30 runs failed: h2_tau0.", self.notes(figures[f"nick18/fig{n}"]))
-        self.assertIn("1 of 42 runs failed: difference_bdf4_h2_tau1.", self.notes(figures["nick18/fig5"]))
+            self.assertIn(r"1 of 30 runs failed: level 2 with $\tau$ = 0.1.", self.notes(figures[f"nick18/fig{n}"]))
+        self.assertIn(r"1 of 42 runs failed: BDF4, level 2 with $\tau$ = 0.05.", self.notes(figures["nick18/fig5"]))
 
     def test_small_tables_give_what_they_have(self):
         def drawn(keep, levels=2, exponents=2):

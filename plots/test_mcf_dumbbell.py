@@ -176,7 +176,7 @@ class Dumbbell(unittest.TestCase):
 
     def test_failed_runs_are_counted(self):
         notes = [text.get_text() for text in self.figures["kll19/fig13_5"].texts]
-        self.assertIn("1 of 21 runs failed: bgn_plain_p1_cascade_h1_0.003.", notes)
+        self.assertIn(r"1 of 21 runs failed: BGN, linear elements, $N = 10{,}522$ with $\tau$ = 0.003.", notes)
 
     def test_a_missing_snapshot_is_named(self):
         row = dumbbell_row("dziuk", snapshots=[{"t": 0, "file": "gone.vtu"}])

@@ -36,6 +36,13 @@ class Style(unittest.TestCase):
                          [r"$1.3\cdot 10^{-2}$", "$10^{-6}$", r"$3\cdot 10^{5}$"])
         self.assertEqual(style.nodes_label(12000), "$N = 12{,}000$")
 
+    def test_runs_are_told_by_mesh_and_step_size(self):
+        rows = [{"nodes": 1342, "tau": 0.1}, {"nodes": 1342, "tau": 0.05}, {"nodes": 0, "level": 2, "tau": 0.1, "of": "a"}]
+        self.assertEqual(style.in_words(rows), r"$N = 1{,}342$ with $\tau$ = 0.1, 0.05; level 2 with $\tau$ = 0.1")
+        self.assertIn(r"; a, level 2 with $\tau$ = 0.1", style.in_words(rows, lambda row: row.get("of", "")))
+        many = [{"nodes": 10 + i, "tau": tau} for i in range(8) for tau in (0.1, 0.05)]
+        self.assertTrue(style.in_words(many).endswith(r"$N = 15$ with $\tau$ = 0.1, 0.05 and 4 more"))
+
     def test_a_limit_has_its_name_where_there_is_room(self):
         for ylim, side in (((0, 10), "bottom"), ((-10, 3), "top")):
             axes = Figure().add_axes([0, 0, 1, 1])

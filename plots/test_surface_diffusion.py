@@ -68,8 +68,8 @@ class SurfaceDiffusion(unittest.TestCase):
             self.assertIn(f"$t = {t:.3g}$", texts_of(figure))
         self.assertEqual([len(data_lines(axes)) for axes in (area, volume, elongation)], [4, 4, 4])
         legend = [text.get_text() for text in figure.legends[0].get_texts()]
-        self.assertEqual(set(legend), {r"paper, $\tau = 0.05$", r"paper, $\tau = 0.025$", r"paper, $\tau = 0.0125$",
-                                       r"relaxed, $\tau = 0.025$"})
+        self.assertEqual(set(legend), {r"fixed steps, $\tau = 0.05$", r"fixed steps, $\tau = 0.025$",
+                                       r"fixed steps, $\tau = 0.0125$", r"adaptive steps, relaxation, $\tau = 0.025$"})
         self.assertIn("$N = 4{,}104$. Fixed steps", texts_of(figure))
         self.assertEqual((area.get_yscale(), volume.get_yscale()), ("linear", "log"))
         self.assertIn("volume, $|V(t) / V(0) - 1|$", texts_of(figure))
@@ -91,8 +91,8 @@ class SurfaceDiffusion(unittest.TestCase):
         rows[5].update(status="singular at t = 1 (step 9): why")
         figure = self.draw(rows)
         self.assertEqual([len(data_lines(axes)) for axes in self.panels(figure)], [4, 3, 4])
-        self.assertIn("1 of 8 runs failed: h0_tau1.", texts_of(figure))
-        self.assertIn("Stopped early, as singular: h1_tau2.", texts_of(figure))
+        self.assertIn(r"1 of 8 runs failed: fixed steps, level 0 with $\tau$ = 0.025.", texts_of(figure))
+        self.assertIn(r"Stopped early, as singular: fixed steps, $N = 4{,}104$ with $\tau$ = 0.0125.", texts_of(figure))
         figure = self.draw([diffusion_row(0, 0, snapshots=[])])
         self.assertFalse([axes for axes in figure.axes if axes.collections])
         with self.assertRaisesRegex(TableError, "h0_tau0/surfaces_0000.vtu: no such snapshot"):

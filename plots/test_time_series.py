@@ -51,10 +51,10 @@ class TimeSeries(unittest.TestCase):
             self.assertLessEqual(len(labels), 10)
 
     def test_notes_tell_failed_from_stopped(self):
-        rows = [{"cell": f"c{i}", "status": status} for i, status in
+        rows = [{"nodes": 100 * i, "tau": 0.1, "status": status} for i, status in
                 enumerate(["ok", "singular at t = 1 (step 2): why"] + 8 * ["failed: why"])]
-        self.assertEqual(time_series.failure_notes(rows), ["8 of 10 runs failed: c2, c3, c4, c5, c6, c7 and 2 more."])
-        self.assertEqual(time_series.stopped_notes(rows), ["Stopped early, as singular: c1."])
+        self.assertEqual(" ".join(time_series.failure_notes(rows)), "8 of 10 runs failed: " + "; ".join(rf"$N = {n}00$ with $\tau$ = 0.1" for n in range(2, 8)) + " and 2 more.")
+        self.assertEqual(time_series.stopped_notes(rows, lambda row: "a"), [r"Stopped early, as singular: a, $N = 100$ with $\tau$ = 0.1."])
         self.assertEqual(time_series.failure_notes(rows[:2]) + time_series.stopped_notes(rows[:1]), [])
 
 

@@ -28,6 +28,9 @@ class Tumour(unittest.TestCase):
             (name, figure), = tumour_growth.draw({"rows": [row]}, folder)
             self.assertEqual(name, "gallery/tumour_growth")
             widths = [axes.get_position().width for axes in figure.axes[:2]]
+            extremes = figure.axes[-2]
+            self.assertEqual([line.get_linestyle() for line in extremes.lines], ["--", "-"])
+            self.assertEqual([text.get_text() for text in extremes.get_legend().get_texts()], ["min", "max"])
             self.assertAlmostEqual(widths[1] / widths[0], 2)  # one scale for all
             row["snapshots"][1]["file"] = "c.vtu"
             with self.assertRaisesRegex(TableError, "c.vtu: no such snapshot"):

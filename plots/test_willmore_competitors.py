@@ -53,7 +53,7 @@ class Competitors(unittest.TestCase):
             rows.setdefault(round(axes.get_position().y0, 6), []).append(axes)
         upper, lower = (rows[y] for y in sorted(rows, reverse=True))
         self.assertEqual((len(upper), len(lower)), (2, 3))
-        self.assertEqual(upper[0].get_ylabel(), "error of $x$ in $H^1$")
+        self.assertEqual(upper[0].get_ylabel(), "error of $x$ in $H^1$, nodal")
         self.assertEqual(lower[0].get_ylabel(), r"$|W(\kappa_h) - W^*|$")
         for axes in upper + lower:
             self.assertEqual((len(lines_of(axes)), axes.get_yscale(), axes.get_xlabel()), (5, "log", "$t$"))
@@ -97,13 +97,13 @@ class Competitors(unittest.TestCase):
         rows[0].update(status="failed: step 2: why", series={}, h=0, nodes=0)
         rows[1].update(status="singular at t = 0.5 (step 20): why")
         figure = draw(rows)
-        self.assertIn(f"1 of 15 runs failed: {rows[0]['cell']}.", texts_of(figure))
-        self.assertIn(f"Stopped early, as singular: {rows[1]['cell']}.", texts_of(figure))
+        self.assertIn(r"1 of 15 runs failed: sphere, KLL, quadratic, level 1 with $\tau$ = 0.025.", texts_of(figure))
+        self.assertIn(r"Stopped early, as singular: sphere, Dziuk, linear, $N = 1{,}926$ with $\tau$ = 0.025.", texts_of(figure))
         self.assertEqual(len(lines_of(figure.axes[0])), 4)
 
     def test_small_tables_give_what_they_have(self):
         only_errors = competitor_row("willmore", "sphere", 2, series={"t": [0, 0.5, 1], "x_nodal_H1": [0, 1e-3, None]})
-        self.assertEqual([axes.get_ylabel() for axes in draw([only_errors]).axes], ["error of $x$ in $H^1$"])
+        self.assertEqual([axes.get_ylabel() for axes in draw([only_errors]).axes], ["error of $x$ in $H^1$, nodal"])
         for row in (competitor_row("willmore", "cube", 2),
                     competitor_row("willmore", "sphere", 2, series={"t": [0]}),
                     competitor_row("willmore", "sphere", 2, status="failed: why")):

@@ -55,21 +55,16 @@ def add_notes(figure, notes):
         figure.text(LEFT / style.WIDTH, y, note, fontsize=7.5, va="bottom")
 
 
-def failure_notes(rows):
-    """The lines of a note that says which runs failed; none when all are there."""
+def failure_notes(rows, name=None):
+    """The lines of a note that says which runs failed; none when all are there. `name(row)`: see style.in_words."""
     failed = [row for row in rows if not has_series(row)]
-    return style.wrap(f"{len(failed)} of {len(rows)} runs failed: {_names(failed)}.") if failed else []
+    return style.wrap(f"{len(failed)} of {len(rows)} runs failed: {style.in_words(failed, name)}.") if failed else []
 
 
-def stopped_notes(rows):
+def stopped_notes(rows, name=None):
     """The lines of a note that says which runs stopped at a singularity; none when none did."""
     stopped = [row for row in rows if has_series(row) and not succeeded(row)]
-    return style.wrap(f"Stopped early, as singular: {_names(stopped)}.") if stopped else []
-
-
-def _names(rows):
-    names = [str(row.get("cell", "?")) for row in rows]
-    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+    return style.wrap(f"Stopped early, as singular: {style.in_words(stopped, name)}.") if stopped else []
 
 
 def draw_series(axes, row, name, line_style, span, change=None):
@@ -99,7 +94,7 @@ def scale(axes, values, logarithmic=False):
     if logarithmic:
         axes.set_yscale("log")
         values = np.log10(values)
-    room = max(0.06 * np.ptp(values), 0.01)
+    room = max(0.06 * np.ptp(values), 0.01 if logarithmic else 1e-4 * np.abs(values).max())
     low, high = values.min() - room, values.max() + room
     axes.set_ylim(*(10**np.array([low, high]) if logarithmic else (low, high)))
     if logarithmic:

@@ -17,6 +17,7 @@ from table import TableError, has_series
 
 STEM = "tumour_growth"
 VIEW = view(30, 20)
+DASHES = style.DASHES["dashed"], style.DASHES["solid"]  # of minimum and maximum
 PANELS, LABELS = 1.3, 0.42  # heights in inches
 
 
@@ -43,8 +44,10 @@ def _figure(row, strip):
     times = row["series"]["t"]
     for i, (names, label) in enumerate(((("min_u1", "max_u1"), "min and max of $u_1$"), (("area",), "area"))):
         axes = figure.add_axes([0.09 + 0.49 * i, LABELS / height, 0.40, PANELS / height])
-        for name in names:
-            axes.plot(times, row["series"][name], color=style.BLUE)
+        for name, dashes in zip(names, DASHES[-len(names):]):
+            axes.plot(times, row["series"][name], color=style.BLUE, linestyle=dashes, label=name[:3])
+        if len(names) > 1:
+            axes.legend(loc="upper left", handlelength=2.6, labelspacing=0.25)
         axes.set(xlabel="$t$", xlim=(0, times[-1]))
         axes.set_ylabel(label, labelpad=2)
         axes.grid(True)

@@ -9,7 +9,7 @@ import statistics
 import numpy as np
 
 import style
-from convergence import NORMS, QUANTITIES, Panel, checked_curves, curves_of, draw_panels, failure_notes
+from convergence import NORMS, QUANTITIES, ROUND_OFF, Panel, checked_curves, curves_of, draw_panels, failure_notes
 from table import succeeded
 from time_series import positive
 
@@ -23,35 +23,27 @@ def limit_of(surface):
     return TORUS if "torus" in surface else SPHERE
 
 
-def within_reach(values, limit):
-    """Which energies are so close to their limit that they are shown: a run that goes astray hides no other."""
-    return np.abs(values - limit) <= 0.5 * limit
-
-
 def errors_and_energy(rows, norm, degree, limit):
-    """Figures 7.1, 7.3 and 7.4: errors of x, nu and H, and the Willmore energy at the end, against the mesh width.
+    """Figures 7.1, 7.3 and 7.4: errors of x, nu and H, and of the Willmore energy at the end, against the mesh width.
 
-    A line for each step size, and the theory's order, which is the degree. Runs that did not finish are missing and
+    A line for each step size, and the theory's order, which is the degree; there is none for the energy. Runs that did not finish are missing and
     counted below; when there are no others, the figure says just that.
     """
     if not any(map(succeeded, rows)):
-        return style.notice([f"None of {len(rows)} runs finished. The first, {rows[0].get('cell', '?')}: "
-                             f"{rows[0]['status']}."])
+        return style.notice([f"None of {len(rows)} runs finished. The first: {rows[0]['status']}."])
     panels, skipped = [], {}
     for quantity in ERRORS:
         lines, skipped[quantity] = checked_curves(rows, quantity, norm, "h")
         panels.append(Panel(QUANTITIES[quantity], lines, "h", degree))
-    energies, missing = curves_of(rows, lambda row: (row.get("values") or {}).get("willmore_energy"), "h")
-    outside = 0
-    for line in energies:
-        near = within_reach(line.points[:, 1], limit[0])
-        line.points, outside = line.points[near], outside + (~near).sum()
-    panels.append(Panel(f"Willmore energy{_end(rows)}", energies, "h", limit=limit))
+    energies, skipped["the energy"] = curves_of(rows, lambda row: _energy_error(row, limit[0]), "h", smallest=ROUND_OFF)
+    panels.append(Panel(f"$|W - {limit[1].strip('$')}|${_end(rows)}", energies, "h"))
     notes = failure_notes(rows, skipped)
-    if missing or outside:
-        notes += style.wrap(f"Energies not shown: {missing} missing, {outside} farther than half of {limit[1]} from "
-                            f"{limit[1]}.")
     return draw_panels(panels, f"error in {NORMS[norm]}", notes, columns=4)
+
+
+def _energy_error(row, limit):
+    energy = (row.get("values") or {}).get("willmore_energy")
+    return None if energy is None else abs(energy - limit)
 
 
 def _end(rows):

@@ -10,15 +10,16 @@ from matplotlib import ticker
 
 import style
 import time_series
-from convergence import NORMS
+from convergence import NORMS_AT_A_TIME
 from script import run
 from table import TableError, has_series, label_of, series
 from willmore import finest, from_limit, limit_of
 
 ERROR = "x_nodal_H1"
 SURFACES = {"sphere": "sphere", "clifford_torus": "Clifford torus", "ellipsoid": "ellipsoid"}
-SCHEMES = {"willmore": ("KLL", style.BLUE), "dziuk_willmore": ("Dziuk", style.VERMILLION),
-           "bgn_willmore": ("BGN", style.PURPLE)}
+# Thinner lines lie on top: lines that coincide all show.
+SCHEMES = {"willmore": ("KLL", style.BLUE, 1.15), "dziuk_willmore": ("Dziuk", style.VERMILLION, 2.1),
+           "bgn_willmore": ("BGN", style.PURPLE, 1.0)}
 DEGREES = {2: ("quadratic", style.DASHES["solid"]), 1: ("linear", style.DASHES["dashed"])}
 # The energy of the discrete surface is the same functional for all schemes; W(H_h) is of a scheme's own H_h.
 ENERGIES = ("kappa_energy", "willmore_energy")
@@ -56,7 +57,7 @@ def _of(runs, surface, *names):
 
 
 def _line(scheme, degree):
-    return {"color": SCHEMES[scheme][1], "linestyle": DEGREES[degree][1], "linewidth": 1.15}
+    return {"color": SCHEMES[scheme][1], "linestyle": DEGREES[degree][1], "linewidth": SCHEMES[scheme][2]}
 
 
 def _label(scheme, degree):
@@ -69,7 +70,7 @@ def _figure(panels, errors, energies, notes):
     headings = [[SURFACES[surface] for surface in panels[0]],
                 [f"{SURFACES[surface]}, $W^* = {limit_of(surface)[1].strip('$')}$" for surface in panels[1]]]
     figure, grid = time_series.panels([texts for texts in headings if texts], legend, notes)
-    labels = [f"error of $x$ in {_norm()}", r"$|W(\kappa_h) - W^*|$"]
+    labels = [f"error of $x$ in {NORMS_AT_A_TIME[ERROR.removeprefix('x_')]}", r"$|W(\kappa_h) - W^*|$"]
     for found, surfaces, label, axes_row in zip((errors, energies), panels, labels, _aligned(grid, panels)):
         for i, (surface, axes) in enumerate(zip(surfaces, axes_row)):
             values, end = [], 0
@@ -86,10 +87,6 @@ def _figure(panels, errors, energies, notes):
     return figure
 
 
-def _norm():
-    return NORMS[ERROR.removeprefix("x_")].removeprefix(r"$L^\infty(").removesuffix(")$").join("$$")
-
-
 def _aligned(grid, panels):
     """The rows of the grid for the rows of `panels`, an empty row having none."""
     rows = iter(grid)
@@ -103,7 +100,7 @@ def _which(variants, every):
     for part, names in ((1, DEGREES), (0, SCHEMES)):
         kinds = {variant[part] for variant in variants}
         if len(variants) == sum(variant[part] in kinds for variant in every):
-            return f" ({', '.join(name for key, (name, _) in names.items() if key in kinds)})"
+            return f" ({', '.join(name for key, (name, *_) in names.items() if key in kinds)})"
     return f" ({'; '.join(_label(*variant) for variant in variants)})"
 
 
@@ -129,8 +126,12 @@ def _notes(runs, rows):
            for (scheme, degree), (_, name) in _of(runs, surface, *ENERGIES).items() if name != ENERGIES[0]]
     if own:
         notes.append(f"With the scheme's own $H_h$ in place of $\\kappa_h$: {'; '.join(dict.fromkeys(own))}.")
-    return ([line for note in notes for line in style.wrap(note)] + time_series.stopped_notes(runs.values())
-            + time_series.failure_notes(rows))
+    return ([line for note in notes for line in style.wrap(note)] + time_series.stopped_notes(runs.values(), _name)
+            + time_series.failure_notes(rows, _name))
+
+
+def _name(row):
+    return f"{SURFACES[label_of(row, 'surface')]}, {_label(label_of(row, 'flow'), label_of(row, 'degree'))}"
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import numpy as np
 
 import style
 import time_series
-from convergence import Panel, curves_of, draw_panels, failure_notes
+from convergence import NORMS, Panel, curves_of, draw_panels, failure_notes
 from script import run
 from table import TableError, has_series, label_of, succeeded
 
@@ -53,8 +53,8 @@ def _errors_figure(rows):
     finished = [row for row in rows if succeeded(row) or row not in sphere]
     if sphere:
         lines, skipped["sphere"] = curves_of(sphere, lambda row: row["errors"].get("x", {}).get("nodal_H1"), "tau", _line)
-        panels.append(Panel("sphere, $x$ in $H^1$ (nodal), BDF2", lines, "tau"))
-    return draw_panels(panels, r"error, $L^\infty(L^2)$", [*_singular_notes(sphere), *failure_notes(finished, skipped)], columns=3)
+        panels.append(Panel(r"sphere, $x$ in $L^\infty(H^1)$, BDF2", lines, "tau"))
+    return draw_panels(panels, f"error in {NORMS['nodal_L2']}", [*_singular_notes(sphere), *failure_notes(finished, skipped)], columns=3)
 
 
 def _singular_notes(rows):

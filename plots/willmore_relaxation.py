@@ -2,7 +2,7 @@
 """Figure 7.5 of Kovács, Li, Lubich (2021): Willmore flow of general surfaces towards stationary ones.
 
 Usage: python3 plots/willmore_relaxation.py results/paper/willmore_relaxation.json figures
-Writes figures/kll21/fig7_5.{pdf,png}: the surfaces of the paper at several times and their energy over time; and
+Writes figures/kll21/fig7_5.{pdf,png}: the surfaces of the paper at several times and how far their energy is from its limit; and
 figures/gallery/willmore_relaxation.{pdf,png}: how far the energy of every surface is from its limit, in each setting.
 """
 import numpy as np
@@ -23,12 +23,13 @@ PAPER = ("ellipsoid", "red_blood_cell", "perturbed_torus")
 # Thinner lines lie on top: lines that coincide all show.
 SETTINGS = {"paper": {"color": style.VERMILLION, "linewidth": 2.1}, "adaptive": {"color": style.BLUE, "linewidth": 1.3},
             "relaxed": {"color": style.GREEN, "linewidth": 0.7}}
+SETTING_NAMES = {"paper": "fixed steps (paper)", "adaptive": "adaptive steps", "relaxed": "adaptive steps, relaxation"}
 ENERGIES = {"willmore_energy": (r"$W(H_h)$", style.DASHES["solid"]),
             "kappa_energy": (r"$W(\kappa_h)$", style.DASHES["dashed"])}
 KAPPA = r"$W = \frac{1}{2}\int H^2$. $H_h$ is computed by the flow, $\kappa_h$ is the mean curvature of the surface."
 TILT = 32
 ROWS = 6  # of surfaces on a page
-PANEL, AXIS = 1.15, 0.36  # inches: the energies below the surfaces, and their time axis
+PANEL, AXIS, LIMIT = 1.15, 0.36, 0.16  # inches: the energies below the surfaces, and their time axis
 
 
 def draw(table, folder):
@@ -53,7 +54,10 @@ def draw(table, folder):
 def _lost(rows, surfaces, settings):
     """Notes on the runs of a figure that failed or stopped early."""
     of_figure = [row for row in rows if label_of(row, "surface") in surfaces and label_of(row, "setting") in settings]
-    return time_series.stopped_notes(of_figure) + time_series.failure_notes(of_figure)
+    def name(row):
+        return f"{SURFACES[label_of(row, 'surface')]}, {SETTING_NAMES[label_of(row, 'setting')]}"
+
+    return time_series.stopped_notes(of_figure, name) + time_series.failure_notes(of_figure, name)
 
 
 def surfaces_figure(columns, notes):
@@ -66,7 +70,7 @@ def surfaces_figure(columns, notes):
     taus = sorted({rf"$\tau = {row['tau']:.3g}$" for row, _ in columns.values()})
     below = AXIS + time_series.LINE * len(notes)
     figure, grid = surface_grid(boxes, [f"$t = {t:.3g}$" for t in times], titles, ", ".join(taus), own_scales=True,
-                                foot=PANEL + below)
+                                foot=PANEL + LIMIT + below)
     for axes_row, surface_row in zip(grid, surfaces):
         for axes, surface, of_column in zip(axes_row, surface_row, views):
             if surface is not None:
@@ -78,11 +82,15 @@ def surfaces_figure(columns, notes):
         axes = figure.add_axes([left, below / height, right - left, PANEL / height])
         _draw_energy(axes, surface, row)
         if i == 0:
-            axes.set_ylabel("Willmore energy", labelpad=2)
+            axes.set_ylabel("$|W - W^*|$", labelpad=2)
             if any(series(row, name) for name in ENERGIES):
                 axes.legend(loc="upper right", borderaxespad=0.3, handlelength=2.2, labelspacing=0.2)
     time_series.add_notes(figure, notes)
     return figure
+
+
+def _limit_text(surface):
+    return f"$W^* = {limit_of(surface)[1].strip('$')}$"
 
 
 def _draw_energy(axes, surface, row):
@@ -90,10 +98,11 @@ def _draw_energy(axes, surface, row):
     end = row["tau"] * row["steps"] if row.get("steps") else max(row["series"]["t"])
     lines = {name: {"color": style.BLUE, "linestyle": dashes, "label": label}
              for name, (label, dashes) in ENERGIES.items()}
-    values = [time_series.draw_series(axes, row, name, line, (0, 1.001 * end)) for name, line in lines.items()]
-    time_series.scale(axes, np.append(np.concatenate(values), limit[0]))
-    style.limit_line(axes, *limit)
+    values = [time_series.draw_series(axes, row, name, line, (0, 1.001 * end), from_limit(limit))
+              for name, line in lines.items()]
+    time_series.scale(axes, np.concatenate(values), logarithmic=True)
     axes.set(xlim=(0, end), xlabel="$t$")
+    axes.set_title(_limit_text(surface), fontsize=8.5, pad=2)
     axes.xaxis.labelpad = 1
     axes.grid(True)
 
@@ -101,9 +110,9 @@ def _draw_energy(axes, surface, row):
 def energies_figure(runs, notes):
     """The distance of both energies from the limit over time: a panel for each surface, a colour for each setting."""
     surfaces = [surface for surface in SURFACES if any(key[0] == surface for key in runs)]
-    legend = {setting: line for setting, line in SETTINGS.items() if any(key[1] == setting for key in runs)}
+    legend = {SETTING_NAMES[setting]: line for setting, line in SETTINGS.items() if any(key[1] == setting for key in runs)}
     legend |= {label: {"color": "black", "linestyle": dashes} for label, dashes in ENERGIES.values()}
-    headings = [f"{SURFACES[surface]}, $W^* = {limit_of(surface)[1].strip('$')}$" for surface in surfaces]
+    headings = [f"{SURFACES[surface]}, {_limit_text(surface)}" for surface in surfaces]
     rows = [headings[i:i + 3] for i in range(0, len(headings), 3)]
     figure, grid = time_series.panels(rows, legend, [KAPPA, *notes], abreast=5)
     all_axes = [axes for row in grid for axes in row]

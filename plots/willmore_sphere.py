@@ -21,6 +21,7 @@ PAPER = {"flow": "willmore", "theta": "no"}
 PROJECTIONS = {"none": ("without projections", {"color": "black", "zorder": 2.2}),
                "projected": ("with projections", {"color": "0.6", "linewidth": 1.3})}
 MARKERS = {"min": {"marker": "o", "markersize": 4}, "max": {"marker": "*", "markersize": 5.5}}
+APART = {("none", "min"): 0, ("projected", "min"): 1, ("none", "max"): 2, ("projected", "max"): 3}  # marks of lines that coincide
 PAIRS = {"nu": r"$\min\,|\nu_h|$ and $\max\,|\nu_h|$", "radius": "min and max distance from 0"}
 
 
@@ -50,7 +51,7 @@ def projections_figure(rows):
               if any(label_of(row, "projection") == key for row in shown)}
     legend |= {f"{kind}imum": {"color": "black", "linestyle": "none", "markerfacecolor": "white", **marker}
                for kind, marker in MARKERS.items()}
-    notes = time_series.failure_notes(rows)
+    notes = time_series.failure_notes(rows, lambda row: PROJECTIONS[label_of(row, "projection")][0])
     notes = [textwrap.shorten(f"{PROJECTIONS[label_of(row, 'projection')][0].capitalize()}: {row['status']}", 140)
              for row in shown if row["status"] != "ok"] + notes
     headings = [*PAIRS.values(), "Willmore energy"]
@@ -58,9 +59,9 @@ def projections_figure(rows):
     figure, (panels,) = time_series.panels([headings], legend, [f"Sphere of radius 1, {setting}.", *notes])
     end = max(row["tau"] * row["steps"] for row in shown)
     for axes, quantity in zip(panels, (*PAIRS, None)):
-        axes.set_xlim(-0.02 * end, 1.02 * end)
+        axes.set_xlim(-0.06 * end, 1.06 * end)
         if quantity:
-            values = [_draw(axes, row, f"{kind}_{quantity}", end, marker)
+            values = [_draw(axes, row, f"{kind}_{quantity}", end, {**marker, "markevery": _marks(row, kind)})
                       for row in shown for kind, marker in MARKERS.items()]
             values = np.concatenate(values)
             time_series.scale(axes, values, logarithmic=max(values, default=1) > 10)
@@ -71,10 +72,13 @@ def projections_figure(rows):
     return figure
 
 
+def _marks(row, kind):
+    every = max(round(len(row["series"]["t"]) / 10), 4)
+    return APART[label_of(row, "projection"), kind] * every // 4, every
+
+
 def _draw(axes, row, name, end, marker):
-    found = series(row, name)
-    every = max(round(len(found[0]) / 10), 1) if found else 1
-    line = {**PROJECTIONS[label_of(row, "projection")][1], "markerfacecolor": "white", "markevery": every, **marker}
+    line = {**PROJECTIONS[label_of(row, "projection")][1], "markerfacecolor": "white", **marker}
     return time_series.draw_series(axes, row, name, line, (0, 1.001 * end))
 
 
