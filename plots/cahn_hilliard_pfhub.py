@@ -56,7 +56,7 @@ def _pictured(rows, folder):
 
 
 def _mesh(row):
-    return f"P{label_of(row, 'degree', '')}, {style.nodes_label(row['nodes'])}"
+    return f"$P_{label_of(row, 'degree', '')}$, {style.nodes_label(row['nodes'])}"
 
 
 def _has_moose_steps(row):

@@ -148,7 +148,7 @@ def surfaces_figure(setting, methods, folder):
         for axes, file, surface in zip(axes_row, files, surface_row):
             if surface is None:
                 continue
-            draw_surface(axes, surface, rotation, marked=smallest_angles(surface) < SMALL_ANGLE)
+            draw_surface(axes, surface, rotation, facets_per_side=2, marked=smallest_angles(surface) < SMALL_ANGLE)
             if file[2]:
                 axes.text(0.5, 0, file[2], transform=axes.transAxes, ha="center", va="top", fontsize=8)
     time_series.add_notes(figure, notes)

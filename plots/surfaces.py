@@ -214,7 +214,7 @@ def draw_surface(axes, surface, rotation, *, facets_per_side=3, linewidth=0.2, w
     tones = np.concatenate([shade(split.normals[front]), np.full(len(edges), EDGE_TONE)])[order]
     # A facet has a rim of its own colour: else the background shines through between two of them.
     widths = RIM  # one number is drawn faster than many
-    if linewidth != RIM or marked is not None:
+    if linewidth != RIM or marks.any():
         rims = np.where(marks[front], MARKED_RIM, RIM)
         widths = np.concatenate([rims, np.full(len(edges), linewidth)])[order]
     if colours is None:

@@ -41,9 +41,9 @@ class Energies(unittest.TestCase):
         self.assertEqual(name, "pfhub/fig1d")
         axes, = figure.axes
         labels = [text.get_text() for text in axes.get_legend().get_texts()]
-        self.assertEqual(labels, ["P1, $N = 5{,}891$, backward Euler, MOOSE's steps",
-                                  "P1, $N = 5{,}891$, BDF2, tol. $10^{-3}$",
-                                  r"P2, $N = 11{,}846$, BDF2, tol. $2\cdot 10^{-3}$", "MOOSE (PFHub)"])
+        self.assertEqual(labels, ["$P_1$, $N = 5{,}891$, backward Euler, MOOSE's steps",
+                                  "$P_1$, $N = 5{,}891$, BDF2, tol. $10^{-3}$",
+                                  r"$P_2$, $N = 11{,}846$, BDF2, tol. $2\cdot 10^{-3}$", "MOOSE (PFHub)"])
         lines = data_lines(axes)
         self.assertEqual([len(line.get_xdata()) for line in lines[:3]], [sum((TIMES > 0) & (TIMES < 31)), 30, 30])
         self.assertEqual(list(lines[3].get_ydata()), [994.3, 763.0, 642.9, 412.4, 275.2, 179.5, 85.571])
