@@ -68,6 +68,13 @@ TEST(McfDumbbell, KeepsWhatItHasComputedUntilTheSingularity) {
       EXPECT_TRUE(
           fs::exists(folder / "cells/mcf_dumbbell" / row.cell / snapshot.at("file").get<std::string>()));
     EXPECT_TRUE(fs::exists(folder / "cells/mcf_dumbbell" / row.cell / "surfaces.pvd"));
+    const auto& singular = row.more.at("singular_surface");
+    EXPECT_GT(singular.at("t").get<double>(), t.back());
+    EXPECT_EQ(singular.at("extrapolated").get<bool>(),
+              row.status.find("on the extrapolated surface") != std::string::npos)
+        << row.status;
+    EXPECT_TRUE(
+        fs::exists(folder / "cells/mcf_dumbbell" / row.cell / singular.at("file").get<std::string>()));
   }
   fs::remove_all(folder);
 }
