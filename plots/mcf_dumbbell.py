@@ -289,6 +289,7 @@ def normals_figure(settings, notes):
     settings = [setting for setting in settings if _legend([setting], names)]
     if not settings:
         return None
+    notes = [f"The vertical axes are linear within {NEAR_ONE:g} of one, logarithmic beyond.", *notes]
     figure, grid = time_series.panels([[setting.heading(()), ""] for setting in settings], legend, notes)
     end = _end(settings, "max_nu", reference_curvature(ZOOM)[2])
     for setting, (whole, blow_up) in zip(settings, grid):
