@@ -65,10 +65,10 @@ std::vector<Block> preset(bool paper) {
   std::vector<Block> blocks = {
       {{"degree", 2}, {"bdf", 4}, {"level", range(0, 2)}, {"step", 4}},
       {{"run", "interpolation"}, {"level", range(0, 3)}, {"step", paper ? range(1, 5) : range(4, 4)}},
-      {{"run", "order"}, {"bdf", 1}, {"level", coarse}, {"step", range(5, 7)}},
-      {{"run", "order"}, {"bdf", range(2, 5)}, {"level", coarse}, {"step", range(3, 5)}},
+      {{"run", "order"}, {"bdf", 1}, {"level", coarse}, {"step", range(4, 7)}},
+      {{"run", "order"}, {"bdf", range(2, 5)}, {"level", coarse}, {"step", range(3, 6)}},
       {{"run", "derivative"}, {"level", range(1, 3)}, {"step", 3}},
-      {{"run", "printed"}, {"bdf", 1}, {"step", range(3, 5)}}};
+      {{"run", "printed"}, {"bdf", 1}, {"step", range(3, 6)}}};
   if (paper) {
     blocks.push_back({{"bdf", {1, 3}}, {"level", range(0, 4)}, {"step", range(1, smallest_step)}});
     blocks.push_back({{"run", "interpolation"}, {"bdf", 1}, {"level", range(0, 3)}, {"step", range(1, 5)}});

@@ -24,18 +24,26 @@ const char* const help =
     "verdict for\n"
     "each: whether it is met, what was measured (orders with their 95% interval), what was expected, and "
     "from how many\n"
-    "rows. Where the paper's statement does not hold as printed, the verdict is \"reproduced, but\", \"not "
+    "rows. An order is met when its whole interval is within the bounds, and cannot be told when a part of "
+    "it "
+    "is.\n"
+    "Where the paper's statement does not hold as printed, the verdict is \"reproduced, but\", \"not "
     "reproduced\" or\n"
     "\"corrected\"; the expected numbers are then this project's findings, and are checked likewise. A "
     "family of\n"
     "claims is one line, \"18 of 20 met\"; those that are not met are listed below it.\n\n"
     "--output FILE writes all of them as JSON: {\"schema\": \"esfem-verdicts/1\", \"tables\": "
     "[{\"experiment\", \"paper\",\n"
-    "\"table\", \"claims\": [{\"id\", \"statement\", \"source\", \"met\", \"finding\", \"measured\", "
+    "\"table\", \"claims\": [{\"id\", \"statement\", \"source\", \"met\", \"outcome\", \"as_expected\", "
+    "\"finding\", "
+    "\"measured\", "
     "\"expected\", \"rows_used\", ...}], \"families\",\n"
     "\"elsewhere\": how many claims the other preset checks}]}.\n\n"
     "Example:\n  check_orders results/check/mcf_sphere.json\n\n"
-    "Exit codes: 0 all claims are met, 1 wrong usage or input, 3 a claim is not met.\n";
+    "Exit codes: 0 all claims are met or cannot be told where the reference says so, 1 wrong usage or input, "
+    "3 "
+    "one is\n"
+    "not as the reference says.\n";
 
 /// One line of the report, in columns.
 struct Line {
@@ -46,7 +54,10 @@ std::string measured(const Claim& claim, const Verdict& verdict) {
   if (!verdict.measured) return "-";
   if (claim.kind == Claim::size) return format("%.3e", verdict.value);
   if (claim.kind == Claim::value) return format("%.6g", verdict.value);
-  return format("%.2f [%.2f, %.2f]", verdict.value, verdict.ci95[0], verdict.ci95[1]);
+  const std::string order = format("%.2f", verdict.value);
+  if (!verdict.remark.empty() && verdict.remark != "no dependence") return order + ", " + verdict.remark;
+  return order +
+         (verdict.interval ? format(" [%.2f, %.2f]", (*verdict.interval)[0], (*verdict.interval)[1]) : "");
 }
 
 double least(const Claim& claim) {
@@ -61,9 +72,26 @@ std::string expected(const Claim& claim) {
   return text;
 }
 
-Line describe(const Claim& claim, const Verdict& verdict) {
+struct Checked {
+  const Claim* claim;
+  Verdict verdict;
+  bool as_expected;
+};
+
+/// In capitals what is not as the reference says.
+std::string verdict_of(const Checked& checked) {
+  const Verdict::Outcome outcome = checked.verdict.outcome;
+  if (outcome == Verdict::cannot_be_told) return checked.as_expected ? "cannot be told" : "CANNOT BE TOLD";
+  if (outcome == Verdict::fails) return "NOT MET";
+  if (!checked.as_expected) return "CAN BE TOLD";
+  return checked.claim->finding.empty() ? "met" : checked.claim->finding;
+}
+
+Line describe(const Checked& checked) {
+  const auto& [pointer, verdict, as_expected] = checked;
+  const Claim& claim = *pointer;
   Line line;
-  line.verdict = !verdict.met ? "NOT MET" : claim.finding.empty() ? "met" : claim.finding;
+  line.verdict = verdict_of(checked);
   line.measured = measured(claim, verdict);
   line.expected = expected(claim);
   line.rows = std::to_string(verdict.rows_used);
@@ -93,14 +121,19 @@ void print(const std::vector<Line>& lines) {
 }
 
 /// The same for programs: "measured" and "expected" as they are printed.
-nlohmann::json to_json(const Claim& claim, const Verdict& verdict) {
+nlohmann::json to_json(const Checked& checked) {
   static const char* const kinds[] = {"order", "size", "value"};
+  static const char* const outcomes[] = {"holds", "cannot be told", "fails"};
+  const auto& [pointer, verdict, as_expected] = checked;
+  const Claim& claim = *pointer;
   nlohmann::json json = {{"id", claim.id},
                          {"statement", claim.statement},
                          {"source", {{"paper", claim.paper}, {"place", claim.place}, {"basis", claim.basis}}},
                          {"kind", kinds[claim.kind]},
                          {"quantity", claim.quantity},
-                         {"met", verdict.met},
+                         {"met", verdict.met()},
+                         {"outcome", outcomes[verdict.outcome]},
+                         {"as_expected", as_expected},
                          {"finding", claim.finding},
                          {"measured", measured(claim, verdict)},
                          {"expected", expected(claim)},
@@ -119,29 +152,33 @@ nlohmann::json to_json(const Claim& claim, const Verdict& verdict) {
 }
 
 struct Count {
-  int met = 0, checked = 0;
+  int met = 0, cannot_be_told = 0, unexpected = 0, checked = 0;
 };
 
-struct Checked {
-  const Claim* claim;
-  Verdict verdict;
-};
-
-Count count_met(const std::vector<Checked>& claims) {
-  Count count{0, static_cast<int>(claims.size())};
-  for (const Checked& checked : claims) count.met += checked.verdict.met;
+Count count_of(const std::vector<Checked>& claims) {
+  Count count;
+  for (const Checked& checked : claims) {
+    count.met += checked.verdict.met();
+    count.cannot_be_told += checked.verdict.outcome == Verdict::cannot_be_told;
+    count.unexpected += !checked.as_expected;
+  }
+  count.checked = static_cast<int>(claims.size());
   return count;
+}
+
+std::string words(const Count& count, const char* what = "") {
+  return format("%d of %d %smet", count.met, count.checked, what) +
+         (count.cannot_be_told > 0 ? format(", %d cannot be told", count.cannot_be_told) : "");
 }
 
 /// The members of a family that are checked, as one line.
 Line describe_family(const std::string& id, const std::string& statement,
                      const std::vector<Checked>& members) {
-  const Count count = count_met(members);
   const Claim& first = *members[0].claim;
   int rows = 0;
   for (const Checked& member : members) rows += member.verdict.rows_used;
   Line line;
-  line.verdict = format("%d of %d met", count.met, count.checked);
+  line.verdict = words(count_of(members));
   line.rows = std::to_string(rows);
   line.statement = id + ": " + statement + " (" + first.paper + " " + first.place + ")";
   return line;
@@ -157,21 +194,24 @@ std::vector<Line> lines_of(const std::vector<Checked>& claims, const Reference& 
     });
     if (!id.empty()) lines.push_back(describe_family(id, reference.families.at(id), {first, last}));
     for (; first != last; ++first)
-      if (id.empty() || !first->verdict.met) lines.push_back(describe(*first->claim, first->verdict));
+      if (id.empty() || !first->verdict.met()) lines.push_back(describe(*first));
   }
   return lines;
 }
 
-/// {id: {"statement", "met", "claims"}} of the families that have members among the claims.
+/// {id: {"statement", "met", "cannot_be_told", "claims"}} of the families that have members among the claims.
 nlohmann::json families_to_json(const std::vector<Checked>& claims, const Reference& reference) {
   nlohmann::json json = nlohmann::json::object();
   for (const auto& [id, statement] : reference.families) {
     std::vector<Checked> members;
     for (const Checked& checked : claims)
       if (checked.claim->family == id) members.push_back(checked);
-    const Count count = count_met(members);
+    const Count count = count_of(members);
     if (count.checked > 0)
-      json[id] = {{"statement", statement}, {"met", count.met}, {"claims", count.checked}};
+      json[id] = {{"statement", statement},
+                  {"met", count.met},
+                  {"cannot_be_told", count.cannot_be_told},
+                  {"claims", count.checked}};
   }
   return json;
 }
@@ -190,10 +230,10 @@ Count check_table(const std::string& file, const std::string& folder, nlohmann::
   nlohmann::json claims = nlohmann::json::array();
   for (const Claim& claim : reference.claims) {
     if (!applies(claim, table)) continue;
-    checked.push_back({&claim, check_claim(claim, table)});
-    claims.push_back(to_json(claim, checked.back().verdict));
+    const Verdict verdict = check_claim(claim, table);
+    checked.push_back({&claim, verdict, is_as_expected(claim, verdict, table)});
+    claims.push_back(to_json(checked.back()));
   }
-  const Count count = count_met(checked);
   verdicts.push_back({{"experiment", table.experiment},
                       {"paper", table.paper},
                       {"table", file},
@@ -201,13 +241,13 @@ Count check_table(const std::string& file, const std::string& folder, nlohmann::
                       {"families", families_to_json(checked, reference)},
                       {"elsewhere", reference.claims.size() - checked.size()}});
   std::printf("%s (%s): %s\n", table.experiment.c_str(), table.paper.c_str(), file.c_str());
-  if (count.checked == 0) {
+  if (checked.empty()) {
     std::printf("  NOT MET  no claim of %s applies to the preset of this table.\n\n", source.c_str());
-    return {0, 1};
+    return {0, 0, 1, 1};
   }
   print(lines_of(checked, reference));
   std::printf("\n");
-  return count;
+  return count_of(checked);
 }
 
 int run(int argc, char** argv) {
@@ -225,12 +265,15 @@ int run(int argc, char** argv) {
   for (const std::string& file : tables) {
     const Count count = check_table(file, folder, verdicts);
     total.met += count.met;
+    total.cannot_be_told += count.cannot_be_told;
+    total.unexpected += count.unexpected;
     total.checked += count.checked;
   }
   if (!output.empty())
     write_file(output, nlohmann::json{{"schema", "esfem-verdicts/1"}, {"tables", verdicts}}.dump(1) + "\n");
-  std::printf("%d of %d claims met\n", total.met, total.checked);
-  return total.met == total.checked ? exit_done : exit_claim;
+  std::printf("%s\n", words(total, "claims ").c_str());
+  if (total.unexpected > 0) std::printf("%d verdicts are not what the reference says\n", total.unexpected);
+  return total.unexpected == 0 ? exit_done : exit_claim;
 }
 
 }  // namespace

@@ -55,8 +55,8 @@ std::vector<Block> preset(bool paper) {
                                {{"run", "difference"}, {"bdf", {2, 4}}, {"level", {0, 1}}},
                                // Where each order shows: small errors end at round-off times the growth of f.
                                {{"run", "order"}, {"bdf", {1, 3}}, {"step", {3, 4, 5}}},
-                               {{"run", "order"}, {"bdf", {2, 4}}, {"step", {2, 3, 4}}},
-                               {{"run", "order"}, {"bdf", 5}, {"step", {1, 2, 3}}},
+                               {{"run", "order"}, {"bdf", 2}, {"step", {2, 3, 4}}},
+                               {{"run", "order"}, {"bdf", {4, 5}}, {"step", {1, 2, 3, 4}}},
                                {{"run", "convergence"}, {"level", range(0, paper ? 4 : 3)}, {"step", steps}},
                                {{"run", "difference"}, {"level", range(0, paper ? 3 : 1)}, {"step", steps}},
                                {{"run", "dynamic"}, {"level", range(0, paper ? 3 : 2)}}};

@@ -51,25 +51,26 @@ Block otherwise(bool) {
           {"bdf", 3},
           {"start", "exact"},
           {"level", 0},
-          {"step", range(1, 3)}};
+          {"step", range(1, 4)}};
 }
 
 std::vector<Block> preset(bool paper) {
   const char *kll = "mean_curvature", *dziuk = "dziuk";
   if (!paper)
-    return {{{"flow", kll}, {"level", range(0, 2)}, {"step", 2}},
+    return {{{"flow", kll}, {"level", range(0, 3)}, {"step", 2}},
             {{"flow", dziuk}, {"bdf", 2}, {"level", range(0, 2)}, {"step", 2}},
             {{"run", "order"}, {"flow", kll}, {"bdf", {1, 3, 5}}}};
   return {
       {{"flow", kll}, {"level", 3}, {"step", 3}},
       {{"flow", kll}, {"level", range(0, 2)}, {"step", {2, 3}}},
-      {{"flow", kll}, {"triangulation", "unstructured"}, {"level", range(0, 2)}, {"step", 3}},
+      {{"flow", kll}, {"triangulation", "unstructured"}, {"level", range(0, 3)}, {"step", 3}},
       {{"flow", dziuk}, {"bdf", 2}, {"level", range(0, 3)}, {"step", 3}},
       {{"flow", dziuk}, {"bdf", {1, 3}}, {"level", range(0, 2)}, {"step", 3}},
       {{"flow", dziuk}, {"bdf", 2}, {"triangulation", "unstructured"}, {"level", range(0, 1)}, {"step", 3}},
       {{"flow", kll}, {"degree", 3}, {"level", range(0, 3)}, {"step", 2}},
       {{"flow", dziuk}, {"degree", 3}, {"bdf", 2}, {"level", range(0, 2)}, {"step", 2}},
-      {{"run", "order"}, {"bdf", range(1, 5)}, {"step", range(2, 4)}},
+      {{"run", "order"}, {"flow", kll}, {"bdf", range(1, 5)}},
+      {{"run", "order"}, {"flow", dziuk}, {"bdf", range(1, 5)}, {"step", range(2, 4)}},
       {{"run", "order"}, {"flow", kll}, {"degree", 3}, {"bdf", range(1, 5)}}};
 }
 

@@ -19,7 +19,7 @@ PICTURES = ("kll19/fig13_1", "kll19/fig13_3", "kll21/fig7_5", "gallery/willmore_
             "gallery/willmore_projection_length", "bk22/fig6", "gallery/all_orders",
             "gallery/mcf_angenent_torus", "gallery/mcf_competitors", "gallery/tumour_growth", "pfhub/fig1d")
 WIDTH = 1000  # pixels
-COLUMNS = ("reproduced", "reproduced, but", "corrected", "not reproduced", "claim not met")
+COLUMNS = ("reproduced", "reproduced, but", "cannot be told", "corrected", "not reproduced", "claim not met")
 
 
 def headline(results):
@@ -33,7 +33,7 @@ def headline(results):
         rows.append([name, *(str(published[column] or "–") for column in COLUMNS),
                      *(f"{hold} of {number}" if number else "–" for hold, number in pairs), str(checks)])
     heads = ["statements of", *COLUMNS, *COUNTED_BASES.values(), "checks"]
-    kept = [i for i in range(len(heads)) if heads[i] != "claim not met" or any(row[i] != "–" for row in rows)]
+    kept = [i for i in range(len(heads)) if heads[i] not in ("cannot be told", "claim not met") or any(row[i] != "–" for row in rows)]
     lines = [[line[i] for i in kept] for line in [heads, ["---"] * len(heads), *rows]]
     return markdown(lines)
 

@@ -19,9 +19,9 @@ from report_tables import fits_table, provenance_table, runs_table
 from table import TableError
 
 CLASSES = {"reproduced": "reproduced", "reproduced, but": "but", "corrected": "corrected", "not reproduced": "not",
-           "claim not met": "open", "holds": "holds"}
+           "cannot be told": "untold", "claim not met": "open", "holds": "holds"}
 PRINTED_CHECKS = 80
-PUBLISHED = ("reproduced", "reproduced, but", "corrected", "not reproduced", "claim not met")
+PUBLISHED = ("reproduced", "reproduced, but", "cannot be told", "corrected", "not reproduced", "claim not met")
 
 
 def badge(name):
@@ -181,7 +181,7 @@ def counts_table(placed):
 def exceptions_table(results):
     """Published statements that do not hold, paper by paper, worst first."""
     chosen = [statement for statement in results.statements
-              if statement.is_published and statement.verdict in ("claim not met", "not reproduced", "corrected")]
+              if statement.is_published and statement.verdict in ("claim not met", "not reproduced", "corrected", "cannot be told")]
     order = [paper.key for paper in PAPERS]
     chosen.sort(key=lambda statement: (order.index(statement.source["paper"]) if statement.source["paper"] in order
                                        else len(order), SEVERITY.index(statement.verdict)))
@@ -207,7 +207,8 @@ def report_html(results, folder):
                        + [(paper.key, f"{paper.name} ({paper.key})") for paper in PAPERS]
                        + [("beyond", "Beyond the papers"), ("provenance", "Where the numbers come from")])
     met = sum(claim["met"] for claim in claims)
-    lead = (f"{met} of {len(claims)} checks met, of {len(results.statements)} statements, in {len(results.tables)} tables"
+    untold = sum(claim["outcome"] == "cannot be told" for claim in claims)
+    lead = (f"{met} of {len(claims)} checks met, {untold} cannot be told, of {len(results.statements)} statements, in {len(results.tables)} tables"
             f" of preset {' and '.join(presets)}."
             + (f" {results.elsewhere} more are checked at the other preset." if results.elsewhere else ""))
     missing = "".join(tag("li", html.escape(entry)) for entry in results.missing)
@@ -218,8 +219,9 @@ def report_html(results, folder):
             tag("h3", "What holds", id="holds"), counts_table(placed),
             tag("p", "A statement is a sentence, a figure or a theorem of a paper that a computation can test; it may need "
                 "several checks. <i>Reproduced, but</i>: with a restriction that the remark names, or in some settings only. "
+                "<i>Cannot be told</i>: the interval of the order contains both what is stated and its opposite, or there is none. "
                 "<i>Corrected</i>: wrong as printed, and the remark gives the correct version. Independent values come from other implementations; "
-                "findings are this project’s own. Orders are fitted to all runs at once; brackets are 95% intervals.",
+                "findings are this project’s own. Orders are fitted to all runs at once; brackets are 95% intervals, by the jackknife over meshes and step sizes.",
                 class_="note"),
             tag("h2", "What is not reproduced, or corrected", id="exceptions"), exceptions_table(results)]
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "report.css"), encoding="utf-8") as file:

@@ -10,7 +10,7 @@ from table import SCHEMA, TableError
 
 VERDICT_SCHEMA = "esfem-verdicts/1"
 # In the order of lists.
-SEVERITY = ("claim not met", "not reproduced", "corrected", "reproduced, but", "reproduced", "holds")
+SEVERITY = ("claim not met", "not reproduced", "corrected", "cannot be told", "reproduced, but", "reproduced", "holds")
 HOLDING = ("reproduced, but", "reproduced", "holds")
 # What is counted beside the papers' statements, with the heads of the columns.
 COUNTED_BASES = {"theory": "theorems and identities hold", "independent": "independent values met", "finding": "own findings met"}
@@ -69,8 +69,10 @@ class Results:
 
 def verdict(claim):
     """In the words of the report. What no paper states (findings, independent and own values) holds or does not."""
-    if not claim["met"]:
+    if not claim["as_expected"]:
         return "claim not met"
+    if claim["outcome"] == "cannot be told":
+        return claim["outcome"]
     if claim["finding"]:
         return claim["finding"]
     return "reproduced" if claim["source"]["basis"] in ("statement", "theory") else "holds"

@@ -8,12 +8,12 @@ from table import label_text
 
 CLAIM_COLUMNS = ("experiment", "claim", "paper", "place", "basis", "quote", "statement", "verdict", "quantity", "norm", "variable",
                  "labels", "expected", "measured", "rows")
-ORDER_COLUMNS = ("experiment", "labels", "quantity", "norm", "variable", "order", "from", "to", "rows")
+ORDER_COLUMNS = ("experiment", "labels", "quantity", "norm", "variable", "order", "from", "to", "remark", "rows")
 PRINTED_CLAIM_COLUMNS = ("place", "statement", "verdict", "expected", "measured")
 LATEX = {"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
          "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": "$<$", ">": "$>$", "|": "$|$", "§": r"\S",
          "≥": r"$\ge$", "≤": r"$\le$", "²": "$^2$", "³": "$^3$", "⁴": "$^4$", "·": r"$\cdot$", "π": r"$\pi$", "∫": r"$\int$",
-         "–": "--", "’": "'", "λ": r"$\lambda$", "τ": r"$\tau$", "ν": r"$\nu$", "ε": r"$\varepsilon$", "±": r"$\pm$"}
+         "–": "--", "’": "'", "λ": r"$\lambda$", "τ": r"$\tau$", "ν": r"$\nu$", "ε": r"$\varepsilon$", "±": r"$\pm$", "→": r"$\to$"}
 
 
 def claims(results):
@@ -31,7 +31,8 @@ def claims(results):
 def orders(results):
     """A row for each fit, with its 95% interval."""
     return [(stem, label_text(fit.get("labels", {})), fit["quantity"], fit["norm"], fit["variable"], f"{fit['order']:.3f}",
-             f"{fit['ci95'][0]:.3f}", f"{fit['ci95'][1]:.3f}", fit.get("rows_used", ""))
+             *([f"{bound:.3f}" for bound in fit["ci95"]] if fit["ci95"] else ["", ""]),
+             fit.get("remark", ""), fit.get("rows_used", ""))
             for stem, table in results.tables.items() for fit in table.get("fits", [])]
 
 

@@ -12,6 +12,16 @@ SHOWN = ("lifted_H1", "nodal_H1", "lifted_L2", "nodal_L2")  # the first that the
 PRINTED_RUNS, PRINTED_ORDERS = 90, 40  # longer tables are for the screen: paper has the CSV
 
 
+def order_words(fit):
+    """An order with its interval, or with what is to be said instead."""
+    remark = fit.get("remark", "")
+    if remark == "no dependence":
+        return remark
+    if not fit["ci95"]:
+        return f"{fit['order']:.2f} ({text(remark)})"
+    return f"{fit['order']:.2f} ± {(fit['ci95'][1] - fit['ci95'][0]) / 2:.2f}"
+
+
 def fits_table(entry):
     """Orders in h and tau with their intervals: a row for each variant and norm, a column for each quantity."""
     orders, quantities = {}, []
@@ -21,10 +31,7 @@ def fits_table(entry):
             continue  # other norms are in the table itself; 0 stands for errors at round-off
         if quantity not in quantities:
             quantities.append(quantity)
-        half = (fit["ci95"][1] - fit["ci95"][0]) / 2
-        if half > 3:
-            continue  # not determined
-        words = f"{text(fit['variable'])}: {fit['order']:.2f} ± {half:.2f}"
+        words = f"{text(fit['variable'])}: {order_words(fit)}"
         orders.setdefault((label_text(fit.get("labels", {})), norm), {}).setdefault(quantity, []).append(words)
     if not orders:
         return ""

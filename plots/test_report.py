@@ -26,10 +26,15 @@ def claim(name, basis="statement", where="§13.1, Fig. 13.1", paper="kll19", **c
     """A verdict as check_orders writes it."""
     source = {"paper": paper, "place": where, "basis": basis} | ({"quote": "words of the paper"} if basis == "statement" else {})
     made = {"id": name, "statement": f"statement of {name}", "source": source,
-            "kind": "order", "quantity": "x", "norm": "nodal_H1", "variable": "tau", "met": True, "finding": "",
+            "kind": "order", "quantity": "x", "norm": "nodal_H1", "variable": "tau", "finding": "",
+            "met": True, "outcome": "holds", "as_expected": True,
             "measured": "2.95 [2.79, 3.11]", "expected": ">= 2.5", "rows_used": 30, "where": {"flow": "mean_curvature"}, "figures": ["13.1"] if "13.1" in where else [],
             "reason": "", "remark": ""}
     return made | changes
+
+
+FAILS = {"met": False, "outcome": "fails", "as_expected": False}
+CANNOT_BE_TOLD = {"met": False, "outcome": "cannot be told", "as_expected": True}
 
 
 class Words(unittest.TestCase):
@@ -43,7 +48,13 @@ class Words(unittest.TestCase):
         self.assertEqual(verdict(claim("a")), "reproduced")
         self.assertEqual(verdict(claim("a", "finding")), "holds")
         self.assertEqual(verdict(claim("a", finding="corrected")), "corrected")
-        self.assertEqual(verdict(claim("a", finding="corrected", met=False)), "claim not met")
+        self.assertEqual(verdict(claim("a", finding="corrected", **FAILS)), "claim not met")
+
+    def test_what_cannot_be_told_is_no_failure_where_the_reference_says_so(self):
+        self.assertEqual(verdict(claim("a", **CANNOT_BE_TOLD)), "cannot be told")
+        self.assertEqual(verdict(claim("a", **CANNOT_BE_TOLD | {"as_expected": False})), "claim not met")
+        self.assertEqual(self.verdict_of(claim("a"), claim("b", **CANNOT_BE_TOLD)), "reproduced, but")
+        self.assertEqual(self.verdict_of(claim("b", **CANNOT_BE_TOLD)), "cannot be told")
 
     def verdict_of(self, *claims):
         return Statement("mcf_sphere", list(claims)).verdict
@@ -54,7 +65,7 @@ class Words(unittest.TestCase):
         self.assertEqual(self.verdict_of(fails), "not reproduced")
         self.assertEqual(self.verdict_of(holds, fails), "reproduced, but")
         self.assertEqual(self.verdict_of(holds, claim("c", finding="corrected")), "corrected")
-        self.assertEqual(self.verdict_of(fails, claim("d", met=False)), "claim not met")
+        self.assertEqual(self.verdict_of(fails, claim("d", **FAILS)), "claim not met")
 
     def test_a_statement_is_of_a_family_when_all_of_its_checks_are(self):
         members = [claim("a", family="orders"), claim("b", family="orders")]
@@ -96,7 +107,9 @@ class Report(unittest.TestCase):
         table = synthetic_table((0.49, 0.35), range(3))
         table["parameters"]["preset"] = "paper"
         table["fits"] = [{"quantity": "x", "norm": "lifted_H1", "variable": "tau", "order": 2.9, "ci95": [2.8, 3.0],
-                          "labels": {"flow": "mean_curvature"}}]
+                          "labels": {"flow": "mean_curvature"}},
+                         {"quantity": "x", "norm": "lifted_H1", "variable": "h", "order": 2.5, "ci95": None,
+                          "remark": "rising, 2.4 -> 2.9", "labels": {"flow": "mean_curvature"}}]
         table["provenance"] = {"git": "0123456789abcdef", "dirty": False, "date": "2024-02-03T04:05:06Z", "command": "mcf_sphere"}
         table["rows"][0]["status"] = "failed: step 3, t = 0.1: degenerate element 7"
         self.write("table.json", table)
@@ -149,7 +162,7 @@ class Report(unittest.TestCase):
                 self.page(wrong)
 
     def test_a_family_is_one_line_that_opens_to_its_members(self):
-        page, words = self.page(claim("a", family="orders"), claim("b", family="orders", met=False, reason="too low"),
+        page, words = self.page(claim("a", family="orders"), claim("b", family="orders", **FAILS, reason="too low"),
                                 claim("c"))
         self.assertIn("order q in τ: 1 of 2 met", words)
         self.assertIn("2 of 3 checks met", words)
@@ -173,7 +186,7 @@ class Report(unittest.TestCase):
                 self.assertEqual(len(widths), 1, name)
 
     def test_unmet_claims_are_seen_first(self):
-        _, words = self.page(claim("a"), claim("b", met=False, reason="Convergence order not achieved"))
+        _, words = self.page(claim("a"), claim("b", **FAILS, reason="Convergence order not achieved"))
         self.assertIn("1 of 2 checks met", words)
         self.assertLess(words.index("Convergence order not achieved"), words.index("statement of a"))
 
@@ -217,7 +230,7 @@ class Report(unittest.TestCase):
 
     def test_headline(self):
         self.page(claim("a"), claim("b", finding="not reproduced"), claim("c", "finding", "own", "esfem"), claim("d", "theory"),
-                  claim("e", "theory", met=False), claim("f", "regression", "own", "esfem"))
+                  claim("e", "theory", **FAILS), claim("f", "regression", "own", "esfem"))
         table = gallery.headline(self.results)
         self.assertIn("| Mean curvature flow (kll19) | 1 | – | – | 1 | 1 of 2 | – | 1 of 1 | 5 |", table)
         self.assertNotIn("claim not met", table)

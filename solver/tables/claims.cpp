@@ -39,14 +39,17 @@ void read_rows(const Json& json, const std::string& where, Claim& claim) {
   if (claim.from_step < 0) throw InputError(reader.where() + ": 'from_step' is negative");
 }
 
-void read_presets(const JsonReader& reader, Claim& claim) {
-  for (const Json& preset : reader.array("presets")) {
+/// The list `key` of presets, which is not empty.
+std::set<std::string> read_presets(const JsonReader& reader, const std::string& key) {
+  std::set<std::string> presets;
+  for (const Json& preset : reader.array(key)) {
     if (preset != "check" && preset != "paper")
-      throw InputError(reader.where() + ": preset " + preset.dump() + ": expected \"check\" or \"paper\"");
-    claim.presets.insert(preset.get<std::string>());
+      throw InputError(reader.where() + ": '" + key + "': preset " + preset.dump() +
+                       ": expected \"check\" or \"paper\"");
+    presets.insert(preset.get<std::string>());
   }
-  if (claim.presets.empty())
-    throw InputError(reader.where() + ": 'presets' is empty: the claim would never be checked");
+  if (presets.empty()) throw InputError(reader.where() + ": '" + key + "' is empty: it would say nothing");
+  return presets;
 }
 
 void read_figures(const JsonReader& reader, Claim& claim) {
@@ -66,6 +69,7 @@ void read_order(const JsonReader& reader, Claim& claim) {
   if (claim.tolerance < 0) throw InputError(reader.where() + ": 'tolerance' is negative");
   claim.at_most = reader.number_or("at_most", claim.at_most);
   if (reader.has("observed")) claim.observed = reader.number("observed");
+  if (reader.has("cannot_be_told")) claim.cannot_be_told = read_presets(reader, "cannot_be_told");
 }
 
 void read_bounds_of(Claim::Kind kind, const JsonReader& reader, Claim& claim) {
@@ -128,7 +132,7 @@ Claim claim_from_json(const Json& json, const std::string& place) {
     require_labels(claim.where, reader.where() + ", where");
   }
   if (reader.has("rows")) read_rows(reader.object("rows"), reader.where(), claim);
-  if (reader.has("presets")) read_presets(reader, claim);
+  if (reader.has("presets")) claim.presets = read_presets(reader, "presets");
   if (reader.has("figures")) read_figures(reader, claim);
 
   read_finding(reader, claim);
@@ -137,7 +141,7 @@ Claim claim_from_json(const Json& json, const std::string& place) {
                                  "rows", "presets",   "figures", "at_most", "finding",  "remark"};
   const std::string kind = reader.text("kind");
   if (kind == "order") {
-    known.insert({"variable", "expected", "tolerance", "observed"});
+    known.insert({"variable", "expected", "tolerance", "observed", "cannot_be_told"});
     read_order(reader, claim);
   } else if (kind == "size" || kind == "value") {
     known.insert("at_least");
@@ -238,25 +242,37 @@ Verdict check_order(const Claim& claim, const Selection& rows) {
   if (*std::max_element(rows.number.begin(), rows.number.end()) < round_off)
     throw InputError(format("all errors are below %g, at round-off", round_off));
   const OrderFit fit = fit_orders(rows.h, rows.tau, rows.number);
-  const bool in_tau = claim.variable == "tau";
-  if (!(in_tau ? fit.has_tau : fit.has_h))
-    throw InputError("the errors do not show how they depend on " + claim.variable);
+  const std::optional<ObservedOrder>& order = claim.variable == "tau" ? fit.tau : fit.h;
+  if (!order) throw NumericsError("the errors do not show how they depend on " + claim.variable);
 
   Verdict verdict;
   verdict.measured = true;
   verdict.rows_used = fit.rows_used;
-  verdict.value = in_tau ? fit.order_tau : fit.order_h;
-  std::copy_n(in_tau ? fit.ci95_tau : fit.ci95_h, 2, verdict.ci95);
-  if (!(verdict.value + claim.tolerance >= claim.expected))
-    verdict.reason =
-        format("Convergence order not achieved: %.2f instead of the expected %g within a tolerance of %g",
-               verdict.value, claim.expected, claim.tolerance);
-  else if (!(verdict.value <= claim.at_most))
-    verdict.reason =
-        format("Convergence order too high: %.2f, expected at most %g", verdict.value, claim.at_most);
-  else if (claim.observed && !(std::abs(verdict.value - *claim.observed) <= Claim::observed_tolerance))
+  verdict.value = order->order;
+  verdict.remark = order->remark;
+  verdict.interval = order->limit ? order->limit : order->ci95;
+  const double least = claim.expected - claim.tolerance, most = claim.at_most;
+  if (!verdict.interval) {
+    verdict.outcome = Verdict::cannot_be_told;
+    verdict.reason = "Cannot be told, the order has no interval: " + order->remark;
+    return verdict;
+  }
+  const auto [low, high] = *verdict.interval;
+  if (claim.observed && !(std::abs(verdict.value - *claim.observed) <= Claim::observed_tolerance)) {
     verdict.reason = format("Convergence order %.2f is not the %g that is known here, within %g",
                             verdict.value, *claim.observed, Claim::observed_tolerance);
+  } else if (least <= low && high <= most) {
+    verdict.outcome = Verdict::holds;
+  } else if (high < least) {
+    verdict.reason =
+        format("Convergence order not achieved: %.2f, expected at least %g", verdict.value, least);
+  } else if (low > most) {
+    verdict.reason = format("Convergence order too high: %.2f, expected at most %g", verdict.value, most);
+  } else {
+    verdict.outcome = Verdict::cannot_be_told;
+    verdict.reason = format("Cannot be told: the bound %g is between %.2f and %.2f",
+                            low < least ? least : most, low, high);
+  }
   return verdict;
 }
 
@@ -272,6 +288,7 @@ Verdict check_bounds(const Claim& claim, const Selection& rows) {
     verdict.reason = number + format(" is too large, expected at most %g", claim.at_most);
   else if (!(*least >= claim.at_least))
     verdict.reason = number + format(" is too small, expected at least %g", claim.at_least);
+  verdict.outcome = verdict.reason.empty() ? Verdict::holds : Verdict::fails;
   return verdict;
 }
 
@@ -313,13 +330,20 @@ Verdict check_claim(const Claim& claim, const Table& table) {
   try {
     const Selection rows = select(claim, table);
     verdict = claim.kind == Claim::order ? check_order(claim, rows) : check_bounds(claim, rows);
-    verdict.met = verdict.reason.empty();
   } catch (const InputError& error) {
     verdict.reason = std::string("Cannot be checked: ") + error.what();
   } catch (const NumericsError& error) {
-    verdict.reason = std::string("No order: ") + error.what();
+    verdict.outcome = Verdict::cannot_be_told;
+    verdict.reason = std::string("Cannot be told: ") + error.what();
   }
   return verdict;
+}
+
+bool is_as_expected(const Claim& claim, const Verdict& verdict, const Table& table) {
+  const auto preset = table.parameters.find("preset");
+  const bool is_open = preset != table.parameters.end() && preset->is_string() &&
+                       claim.cannot_be_told.count(preset->get<std::string>()) > 0;
+  return verdict.outcome == (is_open ? Verdict::cannot_be_told : Verdict::holds);
 }
 
 bool applies(const Claim& claim, const Table& table) {

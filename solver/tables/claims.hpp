@@ -17,8 +17,9 @@ namespace esfem {
 /// What a paper (or this project) says about one number of an experiment.
 ///
 /// order: the order in `variable`, fitted to the rows in range, is at least expected - tolerance (one-sided:
-/// a method may do better), and at most `at_most` when that is given. size: the error of every row in range
-/// is at most `at_most` (and at least `at_least`). value: the same for a number in Row::values.
+/// a method may do better), and at most `at_most` when that is given; its whole 95% interval is. size: the
+/// error of every row in range is at most `at_most` (and at least `at_least`). value: the same for a number
+/// in Row::values.
 struct Claim {
   enum Kind { order, size, value } kind = order;
   std::string id, statement;
@@ -33,10 +34,12 @@ struct Claim {
   std::string variable;        ///< order: "h" | "tau"
   double expected = 0;         ///< order
   double tolerance = 0;        ///< order
-  /// order: what it is in this setting, where a method does better than `expected`; it is to be within
-  /// observed_tolerance of it, so that a lost order is seen.
+  /// order: what it is in this setting, where a method does better than `expected`: the fitted order is to be
+  /// within observed_tolerance of it, so that a lost order is seen.
   std::optional<double> observed;
   static constexpr double observed_tolerance = 0.5;
+  /// order: the presets at which the runs are known not to tell. It is an error when they can.
+  std::set<std::string> cannot_be_told;
   double at_least = -std::numeric_limits<double>::infinity();
   double at_most = std::numeric_limits<double>::infinity();
   RowRange rows;
@@ -56,10 +59,10 @@ struct Claim {
 /// {"paper", "place", "basis", "quote" (of a statement)}, "kind": "order" | "size" | "value", "quantity",
 /// "norm" (not of a value), "where": {"flow": "dziuk", "bdf": 4}, "rows": {"tau", "tau_min", "tau_max", "h",
 /// "h_min", "h_max", "from_step"}, "presets": [..], "figures": ["13.1"], ...}]}; order: "variable",
-/// "expected", "tolerance", and "at_most", "observed" if wanted; size and value: "at_most" and/or "at_least".
-/// "where" selects rows by their labels, rows.tau and rows.h one value. A claim may have "finding" and
-/// "remark". An entry with "for" is a family (claim_families.hpp). "defaults" beside "claims" has keys for
-/// all of them; those of a claim come first.
+/// "expected", "tolerance", and "at_most", "observed", "cannot_be_told" (a list of presets) if wanted; size
+/// and value: "at_most" and/or "at_least". "where" selects rows by their labels, rows.tau and rows.h one
+/// value. A claim may have "finding" and "remark". An entry with "for" is a family (claim_families.hpp).
+/// "defaults" beside "claims" has keys for all of them; those of a claim come first.
 struct Reference {
   std::string experiment, paper;
   std::vector<Claim> claims;                    ///< the members of a family one after the other
@@ -71,17 +74,28 @@ struct Reference {
 Reference reference_from_json(const nlohmann::json& json, const std::string& source);
 
 struct Verdict {
-  bool met = false;
-  std::string reason;       ///< why it is not met: one sentence
-  bool measured = false;    ///< whether the following are set
-  double value = 0;         ///< the order, or the error that is furthest from being met
-  double ci95[2] = {0, 0};  ///< orders only
+  /// An order holds when its whole interval is within the bounds, and fails when none of it is; else it
+  /// cannot be told, and not either when there is no interval.
+  enum Outcome { holds, cannot_be_told, fails } outcome = fails;
+  std::string reason;     ///< why it does not hold: one sentence
+  bool measured = false;  ///< whether the following are set
+  double value = 0;       ///< the order, or the error that is furthest from being met
+  /// Of an order: its 95% interval, or the limit of slopes that rise or fall; none where `remark` says
+  /// why.
+  std::optional<Interval> interval;
+  std::string remark;  ///< what is to be said of an order (fit_orders.hpp)
   int rows_used = 0;
+
+  bool met() const { return outcome == holds; }
 };
 
 /// A claim for which nothing can be measured (a label or value in "where" that no row has, no rows in range,
-/// a failed one or several variants among them, no such quantity, round-off, no order determined) is not met.
+/// a failed one or several variants among them, no such quantity, round-off) fails; one whose rows determine
+/// no order cannot be told.
 Verdict check_claim(const Claim& claim, const Table& table);
+
+/// Whether the verdict is what the reference says: the claim holds, or cannot be told where it says so.
+bool is_as_expected(const Claim& claim, const Verdict& verdict, const Table& table);
 
 /// Whether the claim is checked at the table's preset, its parameters["preset"]; for a table without one, all
 /// claims are checked.

@@ -1,241 +1,54 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/tables/fit_orders.hpp"
 
-#include <ceres/ceres.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <optional>
+#include <numeric>
 #include <set>
 
 #include "solver/error.hpp"
 #include "solver/linalg/least_squares.hpp"
+#include "solver/tables/power_law.hpp"
 
 namespace esfem {
 namespace {
 
-/// Residuals of log e beyond this lose their influence: deviations of 20%, more than meshes of one family
-/// scatter.
-constexpr double loss_scale = 0.2;
 /// A model that fits to 0.1% is not improved by another term: no computed errors follow a power law more
 /// closely.
 constexpr double noise_floor = 1e-3;
 /// An order with a larger standard error does not distinguish two integer orders.
-constexpr double largest_standard_error = 0.5;
+constexpr double largest_standard_error = 1;
+/// No computed errors follow a power law so closely that their order is known better than this.
+constexpr double smallest_half_width = 0.02;
 /// Rows with larger residuals do not follow the model.
 constexpr double largest_residual = 0.5;
-/// Smallest pivot (linalg/least_squares.hpp) of a Jacobian that determines the parameters.
-constexpr double smallest_condition = 1e-6;
-/// The logarithm of a constant that is zero.
-constexpr double absent = -1e3;
+/// A larger rms residual of log e is no scatter about a power law.
+constexpr double largest_scatter = 0.2;
+/// Below this an error does not depend on the variable: a term with such an order is a plateau.
+constexpr double plateau_order = 0.35;
+/// A dip by this factor below both neighbours is a change of sign.
+const double dip = std::log(1.5);
+/// Slopes that differ by less are the same for every purpose.
+constexpr double smallest_change = 0.1;
 
-/// log C_h, p, log C_tau, q.
-using Parameters = std::array<double, 4>;
-
-/// What a term C s^p of the model is.
-enum class Term { none, plateau, power };
-
-struct Model {
-  Term h, tau;
-  std::vector<int> free_parameters() const {
-    std::vector<int> free;
-    const Term terms[] = {h, tau};
-    for (int i = 0; i < 2; ++i) {
-      if (terms[i] != Term::none) free.push_back(2 * i);
-      if (terms[i] == Term::power) free.push_back(2 * i + 1);
-    }
-    return free;
-  }
+/// The rows of one mesh or of one step size.
+struct Group {
+  double place;  ///< log h or log tau
+  std::vector<int> rows;
 };
 
-/// Logarithms of the rows; h and tau are centred, so that constants and orders are hardly correlated.
+/// The rows and their groups, from coarse to fine.
 struct Data {
-  std::vector<double> log_h, log_tau, log_error;
+  LogErrors rows;
   double centre_h = 0, centre_tau = 0;
-  int rows() const { return static_cast<int>(log_error.size()); }
+  std::vector<Group> meshes, step_sizes;
+  const std::vector<Group>& groups(bool in_tau) const { return in_tau ? step_sizes : meshes; }
 };
 
-struct Residual {
-  double log_h, log_tau, log_error;
-
-  template <class T>
-  bool operator()(const T* log_C_h, const T* p, const T* log_C_tau, const T* q, T* residual) const {
-    using std::exp, std::log;
-    const T a = *log_C_h + *p * log_h, b = *log_C_tau + *q * log_tau;
-    // log(exp(a) + exp(b)) without overflow
-    residual[0] = (a > b ? a + log(1.0 + exp(b - a)) : b + log(1.0 + exp(a - b))) - log_error;
-    return true;
-  }
-};
-
-struct Solution {
-  Model model;
-  Parameters parameters = {absent, 0, absent, 0};
-  Parameters standard_error = {0, 0, 0, 0};
-  double cost = 0;  ///< sum of the losses
-  double criterion = 0;
-  int degrees_of_freedom = 0;
-};
-
-void build_problem(const Data& data, const Model& model, Parameters& parameters, ceres::Problem& problem) {
-  for (int i = 0; i < data.rows(); ++i)
-    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<Residual, 1, 1, 1, 1, 1>(
-                                 new Residual{data.log_h[i], data.log_tau[i], data.log_error[i]}),
-                             new ceres::CauchyLoss(loss_scale), &parameters[0], &parameters[1],
-                             &parameters[2], &parameters[3]);
-  const std::vector<int> free = model.free_parameters();
-  for (int k = 0; k < 4; ++k)
-    if (std::find(free.begin(), free.end(), k) == free.end())
-      problem.SetParameterBlockConstant(&parameters[k]);
-}
-
-/// Slope of log e between the smallest and the largest value of the variable, from medians so that outliers
-/// and the other variable do little.
-double slope_of_extremes(const std::vector<double>& variable, const std::vector<double>& log_error) {
-  const auto [least, most] = std::minmax_element(variable.begin(), variable.end());
-  const auto median_at = [&](double value) {
-    std::vector<double> found;
-    for (std::size_t i = 0; i < variable.size(); ++i)
-      if (std::abs(variable[i] - value) < 1e-6) found.push_back(log_error[i]);
-    std::nth_element(found.begin(), found.begin() + found.size() / 2, found.end());
-    return found[found.size() / 2];
-  };
-  return (median_at(*most) - median_at(*least)) / (*most - *least);
-}
-
-std::vector<double> initial_orders(Term term, const std::vector<double>& variable,
-                                   const std::vector<double>& log_error) {
-  if (term != Term::power) return {0};
-  return {slope_of_extremes(variable, log_error), 1, 2, 4};
-}
-
-/// The largest constant with which the term C s^order exceeds no error: terms are positive.
-double initial_constant(Term term, double order, const std::vector<double>& variable,
-                        const std::vector<double>& log_error) {
-  if (term == Term::none) return absent;
-  double least = log_error[0] - order * variable[0];
-  for (std::size_t i = 1; i < variable.size(); ++i)
-    least = std::min(least, log_error[i] - order * variable[i]);
-  return least;
-}
-
-/// Solves from each initial guess; the best of the solutions, or none.
-std::optional<Solution> best_solution(const Data& data, const Model& model) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = 200;
-  options.function_tolerance = options.gradient_tolerance = options.parameter_tolerance = 1e-13;
-  options.num_threads = 1;
-  options.logging_type = ceres::SILENT;
-
-  std::optional<Solution> best;
-  for (double p : initial_orders(model.h, data.log_h, data.log_error))
-    for (double q : initial_orders(model.tau, data.log_tau, data.log_error)) {
-      Solution trial;
-      trial.model = model;
-      trial.parameters = {initial_constant(model.h, p, data.log_h, data.log_error), p,
-                          initial_constant(model.tau, q, data.log_tau, data.log_error), q};
-      ceres::Problem problem;
-      build_problem(data, model, trial.parameters, problem);
-      ceres::Solver::Summary summary;
-      ceres::Solve(options, &problem, &summary);
-      trial.cost = 2 * summary.final_cost;
-      if (summary.IsSolutionUsable() && (!best || trial.cost < best->cost)) best = trial;
-    }
-  return best;
-}
-
-std::vector<double> residuals(const Data& data, const Solution& solution) {
-  const Parameters& c = solution.parameters;
-  std::vector<double> result(data.rows());
-  for (int i = 0; i < data.rows(); ++i)
-    Residual{data.log_h[i], data.log_tau[i], data.log_error[i]}(&c[0], &c[1], &c[2], &c[3], &result[i]);
-  return result;
-}
-
-/// A robust loss lets a curve through a few rows and past the others: more than half of the rows have to
-/// follow it, and more than it has parameters.
-bool is_followed(const std::vector<double>& residuals, int unknowns) {
-  const int rows = static_cast<int>(residuals.size());
-  const int following = std::count_if(residuals.begin(), residuals.end(),
-                                      [](double r) { return std::abs(r) < largest_residual; });
-  return following > std::max(rows / 2, unknowns);
-}
-
-/// Variance of the residuals of an M-estimator (Huber, Robust Statistics, §7.6): mean psi^2 / (mean psi')^2,
-/// which is the ordinary residual variance when all residuals are small against the scale of the loss.
-double residual_variance(const std::vector<double>& residuals, int degrees_of_freedom) {
-  double psi_squared = 0, psi_slope = 0;
-  for (double r : residuals) {
-    const double s = r * r / (loss_scale * loss_scale);
-    psi_squared += r * r / ((1 + s) * (1 + s));
-    psi_slope += (1 - s) / ((1 + s) * (1 + s));
-  }
-  const double mean_slope = std::max(psi_slope / residuals.size(), 0.05);
-  return psi_squared / degrees_of_freedom / (mean_slope * mean_slope);
-}
-
-/// Whether the Jacobian has full rank. ceres::Covariance detects it, too, but then writes to standard error.
-bool has_full_rank(ceres::Problem& problem, const std::vector<double*>& free) {
-  ceres::Problem::EvaluateOptions options;
-  options.parameter_blocks = free;
-  options.apply_loss_function = false;
-  ceres::CRSMatrix sparse;
-  if (!problem.Evaluate(options, nullptr, nullptr, nullptr, &sparse)) return false;
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(sparse.num_rows, sparse.num_cols);
-  for (int i = 0; i < sparse.num_rows; ++i)
-    for (int k = sparse.rows[i]; k < sparse.rows[i + 1]; ++k) jacobian(i, sparse.cols[k]) = sparse.values[k];
-  return smallest_pivot(jacobian) > smallest_condition;
-}
-
-/// Standard errors of the free parameters; false when the data do not determine them.
-bool find_standard_errors(const Data& data, Solution& solution) {
-  ceres::Problem problem;
-  Parameters& parameters = solution.parameters;
-  build_problem(data, solution.model, parameters, problem);
-  std::vector<double*> blocks;
-  std::vector<std::pair<const double*, const double*>> variances;
-  const std::vector<int> free = solution.model.free_parameters();
-  for (int k : free) {
-    blocks.push_back(&parameters[k]);
-    variances.push_back({&parameters[k], &parameters[k]});
-  }
-  if (!has_full_rank(problem, blocks)) return false;
-  ceres::Covariance::Options options;
-  options.algorithm_type = ceres::DENSE_SVD;
-  options.apply_loss_function = false;  // the loss is in residual_variance
-  options.num_threads = 1;
-  ceres::Covariance covariance(options);
-  if (!covariance.Compute(variances, &problem)) return false;
-  const double variance = residual_variance(residuals(data, solution), solution.degrees_of_freedom);
-  for (int k : free) {
-    double value = 0;
-    if (!covariance.GetCovarianceBlock(&parameters[k], &parameters[k], &value)) return false;
-    solution.standard_error[k] = std::sqrt(value * variance);
-    if (!std::isfinite(solution.standard_error[k])) return false;
-  }
-  return true;
-}
-
-/// The model's solution with its standard errors, when the rows determine all of its parameters.
-std::optional<Solution> solve(const Data& data, const Model& model) {
-  const int unknowns = static_cast<int>(model.free_parameters().size());
-  if (data.rows() <= unknowns) return std::nullopt;
-  std::optional<Solution> solution = best_solution(data, model);
-  if (!solution) return std::nullopt;
-  solution->degrees_of_freedom = data.rows() - unknowns;
-  if (!is_followed(residuals(data, *solution), unknowns)) return std::nullopt;
-  if (!find_standard_errors(data, *solution)) return std::nullopt;
-  const double mean_loss = std::max(solution->cost / data.rows(), noise_floor * noise_floor);
-  // Bayesian information criterion: a further term is penalised for its parameters.
-  solution->criterion = data.rows() * std::log(mean_loss) + unknowns * std::log(data.rows());
-  return solution;
-}
-
-/// Replaces values by their logarithms less the mean of these; returns that mean.
+/// Replaces values by their logarithms less the mean of these, so that constants and orders are hardly
+/// correlated; returns that mean.
 double centre_logarithms(const std::vector<double>& values, std::vector<double>& logarithms) {
   double mean = 0;
   for (double value : values) logarithms.push_back(std::log(value));
@@ -244,10 +57,33 @@ double centre_logarithms(const std::vector<double>& values, std::vector<double>&
   return mean;
 }
 
-int distinct(std::vector<double> centred_logarithms) {
-  std::sort(centred_logarithms.begin(), centred_logarithms.end());
-  const auto same = [](double a, double b) { return b - a < 1e-6; };
-  return std::unique(centred_logarithms.begin(), centred_logarithms.end(), same) - centred_logarithms.begin();
+std::vector<Group> groups_of(const std::vector<double>& places) {
+  std::vector<int> order(places.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return places[a] > places[b]; });
+  std::vector<Group> groups;
+  for (int i : order) {
+    if (groups.empty() || groups.back().place - places[i] > 1e-6) groups.push_back({places[i], {}});
+    groups.back().rows.push_back(i);
+  }
+  return groups;
+}
+
+LogErrors chosen(const LogErrors& rows, const std::vector<int>& which) {
+  LogErrors result;
+  for (int i : which) {
+    result.h.push_back(rows.h[i]);
+    result.tau.push_back(rows.tau[i]);
+    result.error.push_back(rows.error[i]);
+  }
+  return result;
+}
+
+LogErrors without(const LogErrors& rows, const Group& group) {
+  std::vector<int> others;
+  for (int i = 0; i < rows.rows(); ++i)
+    if (std::find(group.rows.begin(), group.rows.end(), i) == group.rows.end()) others.push_back(i);
+  return chosen(rows, others);
 }
 
 void check_input(const std::vector<double>& h, const std::vector<double>& tau,
@@ -267,74 +103,264 @@ void check_input(const std::vector<double>& h, const std::vector<double>& tau,
         format("order fit: %zu rows, at least 3 are needed (5 when h and tau both vary)", error.size()));
 }
 
+Data data_of(const std::vector<double>& h, const std::vector<double>& tau, const std::vector<double>& error) {
+  check_input(h, tau, error);
+  Data data;
+  data.centre_h = centre_logarithms(h, data.rows.h);
+  data.centre_tau = centre_logarithms(tau, data.rows.tau);
+  for (double value : error) data.rows.error.push_back(std::log(value));
+  data.meshes = groups_of(data.rows.h);
+  data.step_sizes = groups_of(data.rows.tau);
+  if (data.meshes.size() < 2 && data.step_sizes.size() < 2)
+    throw InputError("order fit: neither h nor tau varies, at least one of them has to");
+  if (data.meshes.size() > 1 && data.step_sizes.size() > 1 && data.rows.rows() < 5)
+    throw InputError(
+        format("order fit: %d rows, at least 5 are needed when h and tau both vary", data.rows.rows()));
+  return data;
+}
+
 /// The models that the variation of h and tau admits, largest first.
-std::vector<Model> candidates(int distinct_h, int distinct_tau) {
-  const bool h_varies = distinct_h > 1, tau_varies = distinct_tau > 1;
-  std::vector<Model> models;
+std::vector<std::pair<Term, Term>> candidates(const Data& data) {
+  const bool h_varies = data.meshes.size() > 1, tau_varies = data.step_sizes.size() > 1;
+  std::vector<std::pair<Term, Term>> models;
   if (h_varies && tau_varies) models.push_back({Term::power, Term::power});
-  if (distinct_h > 2 && !tau_varies) models.push_back({Term::power, Term::plateau});
-  if (distinct_tau > 2 && !h_varies) models.push_back({Term::plateau, Term::power});
+  if (h_varies && !tau_varies) models.push_back({Term::power, Term::plateau});
+  if (tau_varies && !h_varies) models.push_back({Term::plateau, Term::power});
   if (h_varies) models.push_back({Term::power, Term::none});
   if (tau_varies) models.push_back({Term::none, Term::power});
   return models;
 }
 
-void set_interval(double order, double standard_error, int degrees_of_freedom, double (&interval)[2]) {
+bool is_plateau(Term term, double order) {
+  return term == Term::plateau || (term == Term::power && std::abs(order) < plateau_order);
+}
+
+/// The number of groups that have to determine the law. Beside a plateau only the other variable's count.
+int groups_for(const Data& data, const PowerLaw& law) {
+  const int meshes = static_cast<int>(data.meshes.size()), steps = static_cast<int>(data.step_sizes.size());
+  if (law.tau == Term::none || is_plateau(law.tau, law.parameters[3])) return meshes;
+  if (law.h == Term::none || is_plateau(law.h, law.parameters[1])) return steps;
+  return meshes + steps;
+}
+
+/// A robust loss lets a curve through a few rows and past the others: more than half of the rows have to
+/// follow it, and more than it has parameters.
+bool is_followed(const std::vector<double>& residuals, int unknowns) {
+  const int rows = static_cast<int>(residuals.size());
+  const int following = std::count_if(residuals.begin(), residuals.end(),
+                                      [](double r) { return std::abs(r) < largest_residual; });
+  return following > std::max(rows / 2, unknowns);
+}
+
+/// The largest share of a term in the error of a row.
+double largest_share(const LogErrors& rows, const PowerLaw& law, bool in_tau) {
+  const auto& [log_C_h, p, log_C_tau, q] = law.parameters;
+  double least = 1e300;
+  for (int i = 0; i < rows.rows(); ++i) {
+    const double ratio = log_C_tau + q * rows.tau[i] - log_C_h - p * rows.h[i];
+    least = std::min(least, in_tau ? -ratio : ratio);
+  }
+  return 1 / (1 + std::exp(least));
+}
+
+/// A plateau needs four groups, and is seen when it is half of an error: less of one is slopes that fall.
+bool has_doubtful_plateau(const Data& data, const PowerLaw& law) {
+  if (law.h == Term::none || law.tau == Term::none) return false;
+  const bool in_h = is_plateau(law.h, law.parameters[1]), in_tau = is_plateau(law.tau, law.parameters[3]);
+  if (!in_h && !in_tau) return false;
+  return groups_for(data, law) < 4 || largest_share(data.rows, law, in_tau) < 0.5;
+}
+
+bool is_admissible(const Data& data, const PowerLaw& law) {
+  if (has_doubtful_plateau(data, law)) return false;
+  return is_followed(residuals(data.rows, law), static_cast<int>(law.free_parameters().size())) &&
+         determines(data.rows, law);
+}
+
+/// Bayesian information criterion: a further term is penalised for its parameters.
+double criterion(const Data& data, const PowerLaw& law) {
+  const double mean_loss = std::max(law.cost / data.rows.rows(), noise_floor * noise_floor);
+  const int groups = groups_for(data, law);
+  return groups * std::log(mean_loss) + law.free_parameters().size() * std::log(groups);
+}
+
+std::optional<PowerLaw> best_law(const Data& data) {
+  std::optional<PowerLaw> best;
+  for (const auto& [h, tau] : candidates(data)) {
+    const std::optional<PowerLaw> law = fit_power_law(data.rows, h, tau);
+    if (law && is_admissible(data, *law) && (!best || criterion(data, *law) < criterion(data, *best)))
+      best = law;
+  }
+  return best;
+}
+
+double student_quantile(double probability, int degrees_of_freedom) {
   // Boost computes in long double unless told otherwise.
   using InDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
   const boost::math::students_t_distribution<double, InDouble> student(degrees_of_freedom);
-  const double t = boost::math::quantile(student, 0.975);
-  interval[0] = order - t * standard_error;
-  interval[1] = order + t * standard_error;
+  return boost::math::quantile(student, probability);
 }
 
-OrderFit to_fit(const Data& data, const Solution& solution) {
-  const auto& [log_C_h, p, log_C_tau, q] = solution.parameters;
-  OrderFit fit;
-  fit.rows_used = data.rows();
-  fit.has_h = solution.model.h == Term::power && solution.standard_error[1] <= largest_standard_error;
-  fit.has_tau = solution.model.tau == Term::power && solution.standard_error[3] <= largest_standard_error;
-  if (solution.model.h != Term::none) fit.constant_h = std::exp(log_C_h - p * data.centre_h);
-  if (solution.model.tau != Term::none) fit.constant_tau = std::exp(log_C_tau - q * data.centre_tau);
-  if (fit.has_h) {
-    fit.order_h = p;
-    set_interval(p, solution.standard_error[1], solution.degrees_of_freedom, fit.ci95_h);
+/// The order that rows show with the terms of the law, or with its own term alone where they do not determine
+/// the other.
+std::optional<double> order_of(const LogErrors& rows, PowerLaw law, bool in_tau) {
+  for (const bool with_other : {true, false}) {
+    if (!with_other) {
+      (in_tau ? law.h : law.tau) = Term::none;
+      law.parameters[in_tau ? 0 : 2] = PowerLaw::absent;
+    }
+    const std::optional<PowerLaw> fitted = refit(rows, law);
+    if (fitted && determines(rows, *fitted)) return fitted->parameters[in_tau ? 3 : 1];
   }
-  if (fit.has_tau) {
-    fit.order_tau = q;
-    set_interval(q, solution.standard_error[3], solution.degrees_of_freedom, fit.ci95_tau);
+  return std::nullopt;
+}
+
+/// The standard error of an order by the jackknife: none when the rows without one of the groups do not
+/// determine it.
+std::optional<double> jackknife_error(const Data& data, const PowerLaw& law, bool in_tau) {
+  std::vector<double> orders;
+  for (const Group& group : data.groups(in_tau)) {
+    const std::optional<double> order = order_of(without(data.rows, group), law, in_tau);
+    if (!order) return std::nullopt;
+    orders.push_back(*order);
   }
-  return fit;
+  const int n = static_cast<int>(orders.size());
+  const double mean = std::accumulate(orders.begin(), orders.end(), 0.0) / n;
+  double sum = 0;
+  for (double order : orders) sum += (order - mean) * (order - mean);
+  return std::sqrt((n - 1.0) / n * sum);
+}
+
+double rms(const std::vector<double>& values) {
+  double sum = 0;
+  for (double value : values) sum += value * value;
+  return std::sqrt(sum / values.size());
+}
+
+/// (place, log of the term) of the groups in which the term is seen: the scatter is less than a third of it.
+std::vector<std::pair<double, double>> levels(const Data& data, const PowerLaw& law, bool in_tau) {
+  const double order = law.parameters[in_tau ? 3 : 1];
+  const double smallest_share = std::clamp(3 * rms(residuals(data.rows, law)), 0.01, 0.2);
+  std::vector<std::pair<double, double>> seen;
+  for (const Group& group : data.groups(in_tau))
+    if (const auto constant = fit_constant(chosen(data.rows, group.rows), law, in_tau, smallest_share))
+      seen.push_back({group.place, *constant + order * group.place});
+  return seen;
+}
+
+std::vector<double> slopes_between(const std::vector<std::pair<double, double>>& levels) {
+  std::vector<double> slopes;
+  for (std::size_t i = 1; i < levels.size(); ++i)
+    slopes.push_back((levels[i].second - levels[i - 1].second) / (levels[i].first - levels[i - 1].first));
+  return slopes;
+}
+
+/// Whether a parabola through the levels is significantly better than a line: Student's test of its quadratic
+/// coefficient at 5%.
+bool is_curved(const std::vector<std::pair<double, double>>& levels) {
+  const int n = static_cast<int>(levels.size());
+  if (n < 4) return false;
+  Eigen::MatrixXd terms(n, 3);
+  Eigen::VectorXd values(n);
+  for (int i = 0; i < n; ++i) {
+    const double x = levels[i].first - levels[0].first;
+    terms.row(i) << 1, x, x * x;
+    values(i) = levels[i].second;
+  }
+  const Eigen::VectorXd c = least_squares(terms, values);
+  const double variance = (terms * c - values).squaredNorm() / (n - 3);
+  const double error = std::sqrt(variance * (terms.transpose() * terms).inverse()(2, 2));
+  return std::abs(c[2]) > student_quantile(0.975, n - 3) * error;
+}
+
+/// Whether slopes rise or fall, and change less and less: three at least.
+bool approach_a_limit(const std::vector<double>& slopes) {
+  for (std::size_t i = 2; i < slopes.size(); ++i) {
+    const double before = slopes[i - 1] - slopes[i - 2], change = slopes[i] - slopes[i - 1];
+    if (change * before <= 0 || std::abs(change) > std::abs(before)) return false;
+  }
+  return slopes.size() > 2;
+}
+
+/// Twice what is left to a limit that the last two slopes approach linearly in the variable.
+Interval limit_of_slopes(const std::vector<std::pair<double, double>>& levels,
+                         const std::vector<double>& slopes) {
+  const std::size_t n = levels.size();
+  // The slope between s and r s is that at their geometric mean.
+  const double ratio = std::exp((levels[n - 1].first - levels[n - 3].first) / 2);
+  const double last = slopes[n - 2], change = (last - slopes[n - 3]) * ratio / (1 - ratio);
+  return {std::min(last, last + 2 * change), std::max(last, last + 2 * change)};
+}
+
+/// Whether an error is much smaller than those with the next larger and smaller value of the variable, all
+/// else being equal.
+bool has_dip(const Data& data, bool in_tau) {
+  for (const Group& group : data.groups(!in_tau)) {
+    const LogErrors series = chosen(data.rows, group.rows);
+    const std::vector<Group> points = groups_of(in_tau ? series.tau : series.h);
+    for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+      const auto error = [&](std::size_t k) { return series.error[points[k].rows[0]]; };
+      if (error(i) < std::min(error(i - 1), error(i + 1)) - dip) return true;
+    }
+  }
+  return false;
+}
+
+/// Why there is no interval, as far as the rows together show; empty: there is one.
+std::string objection(const Data& data, const PowerLaw& law) {
+  if (has_dip(data, false) || has_dip(data, true)) return "the error changes sign";
+  const double scatter = rms(residuals(data.rows, law));
+  if (scatter > largest_scatter) return format("the scatter of log e is %.2f", scatter);
+  return "";
+}
+
+/// The order in a variable whose term is a power; none when its standard error is too large.
+std::optional<ObservedOrder> observed_order(const Data& data, const PowerLaw& law, bool in_tau) {
+  ObservedOrder observed;
+  observed.order = law.parameters[in_tau ? 3 : 1];
+  const std::vector<std::pair<double, double>> seen = levels(data, law, in_tau);
+  observed.slopes = slopes_between(seen);
+  const int groups = static_cast<int>(seen.size());
+  if (groups < 2 || (groups < 3 && data.groups(in_tau).size() > 2)) return std::nullopt;
+  if (groups < 3) {
+    observed.remark = in_tau ? "two step sizes" : "two meshes";
+    return observed;
+  }
+  const std::optional<double> error = jackknife_error(data, law, in_tau);
+  if (!error || *error > largest_standard_error) return std::nullopt;
+  observed.remark = objection(data, law);
+  if (!observed.remark.empty()) return observed;
+  const double change = observed.slopes.back() - observed.slopes.front();
+  if (std::abs(change) > smallest_change && (approach_a_limit(observed.slopes) || is_curved(seen))) {
+    observed.limit = limit_of_slopes(seen, observed.slopes);
+    observed.remark = format("%s, %.1f -> %.1f", change > 0 ? "rising" : "falling", observed.slopes.front(),
+                             observed.slopes.back());
+    return observed;
+  }
+  const double half = std::max(student_quantile(0.975, groups - 1) * *error, smallest_half_width);
+  observed.ci95 = Interval{observed.order - half, observed.order + half};
+  if (std::abs(observed.order) < plateau_order) observed.remark = "no dependence";
+  return observed;
 }
 
 }  // namespace
 
 OrderFit fit_orders(const std::vector<double>& h, const std::vector<double>& tau,
                     const std::vector<double>& error) {
-  check_input(h, tau, error);
-  Data data;
-  data.centre_h = centre_logarithms(h, data.log_h);
-  data.centre_tau = centre_logarithms(tau, data.log_tau);
-  for (double value : error) data.log_error.push_back(std::log(value));
-
-  const int distinct_h = distinct(data.log_h), distinct_tau = distinct(data.log_tau);
-  const std::vector<Model> models = candidates(distinct_h, distinct_tau);
-  if (models.empty()) throw InputError("order fit: neither h nor tau varies, at least one of them has to");
-  const bool both = distinct_h > 1 && distinct_tau > 1;
-  if (both && data.rows() < 5)
-    throw InputError(
-        format("order fit: %d rows, at least 5 are needed when h and tau both vary", data.rows()));
-
-  std::optional<Solution> best;
-  for (const Model& model : models) {
-    const std::optional<Solution> solution = solve(data, model);
-    if (solution && (!best || solution->criterion < best->criterion)) best = solution;
+  const Data data = data_of(h, tau, error);
+  OrderFit fit;
+  fit.rows_used = data.rows.rows();
+  if (const std::optional<PowerLaw> law = best_law(data)) {
+    const auto& [log_C_h, p, log_C_tau, q] = law->parameters;
+    if (law->h != Term::none) fit.constant_h = std::exp(log_C_h - p * data.centre_h);
+    if (law->tau != Term::none) fit.constant_tau = std::exp(log_C_tau - q * data.centre_tau);
+    if (law->h == Term::power) fit.h = observed_order(data, *law, false);
+    if (law->tau == Term::power) fit.tau = observed_order(data, *law, true);
   }
-  const OrderFit fit = best ? to_fit(data, *best) : OrderFit{};
-  if (!fit.has_h && !fit.has_tau)
+  if (!fit.h && !fit.tau)
     throw NumericsError(
-        format("order fit: %d rows (%d values of h, %d of tau) determine no order to within %g", data.rows(),
-               distinct_h, distinct_tau, largest_standard_error));
+        format("order fit: %d rows (%zu values of h, %zu of tau) determine no order to within %g",
+               fit.rows_used, data.meshes.size(), data.step_sizes.size(), largest_standard_error));
   return fit;
 }
 
@@ -365,11 +391,13 @@ std::vector<Fit> fit_variant(const std::vector<const Row*>& rows) {
     if (*std::max_element(error.begin(), error.end()) < round_off) continue;
     try {
       const OrderFit fit = fit_orders(h, tau, error);
-      if (fit.has_h)
-        fits.push_back({quantity, norm, "h", fit.order_h, {fit.ci95_h[0], fit.ci95_h[1]}, fit.rows_used});
-      if (fit.has_tau)
-        fits.push_back(
-            {quantity, norm, "tau", fit.order_tau, {fit.ci95_tau[0], fit.ci95_tau[1]}, fit.rows_used});
+      const auto add = [&](const std::string& variable, const std::optional<ObservedOrder>& observed) {
+        if (observed)
+          fits.push_back({quantity, norm, variable, observed->order, observed->ci95, observed->slopes,
+                          observed->remark, fit.rows_used});
+      };
+      add("h", fit.h);
+      add("tau", fit.tau);
     } catch (const InputError&) {
     } catch (const NumericsError&) {
     }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "solver/tables/table.hpp"
@@ -17,22 +19,44 @@ constexpr double round_off = 1e-10;
 
 bool in_range(const Row& row, const RowRange& range);
 
+/// The order in one variable that rows show.
+struct ObservedOrder {
+  double order = 0;
+  std::optional<Interval> ci95;  ///< none where `remark` says why
+  /// Slopes between neighbouring meshes (or step sizes), coarse to fine, where the term is at least a fifth
+  /// of the error; the other term is taken off.
+  std::vector<double> slopes;
+  /// Where the slopes rise or fall: from the last of them to where they end if they change twice as much as
+  /// an error C s^p (1 + c s) does, linearly in s.
+  std::optional<Interval> limit;
+  std::string remark;
+};
+
 /// Observed orders p, q of e = C_h h^p + C_tau tau^q (positive C), from all given rows at once.
 struct OrderFit {
-  bool has_h = false, has_tau = false;  ///< the variable varies and the data determine its order
-  double order_h = 0, ci95_h[2] = {0, 0};
-  double order_tau = 0, ci95_tau[2] = {0, 0};
+  std::optional<ObservedOrder> h, tau;      ///< where the rows determine them
   double constant_h = 0, constant_tau = 0;  ///< 0: the term is not in the model
   int rows_used = 0;
 };
 
-/// Fits log e = log(C_h h^p + C_tau tau^q) by Ceres with Cauchy's loss; 95% intervals from the covariance
-/// (scaled by the residual variance, Student's t). When only one variable varies, the other term is a
-/// constant plateau.
+/// Fits log e = log(C_h h^p + C_tau tau^q) by Ceres with Cauchy's loss (power_law.hpp).
 ///
-/// The full model or one with a single term is selected by the Bayesian information criterion, so that a term
-/// without effect on the data is omitted. An order counts as determined (has_h, has_tau) when its standard
-/// error is at most 1/2; a term that shows in a few rows only stays in the model without one.
+/// Rows that share a mesh or a step size share a part of their errors. So a group, all rows of one mesh or of
+/// one step size, is what counts:
+/// - The full model or one with a single term is selected by the Bayesian information criterion with the
+/// number
+///   of groups, so that a term without effect is omitted. When only one variable varies, the other term is a
+///   plateau; a plateau beside an order needs four groups.
+/// - 95% intervals are those of the jackknife (Efron, Stein, Ann. Statist. 9, 1981) that leaves out one group
+///   after the other, with Student's t of one degree of freedom less than groups in which the term is seen:
+///   its share of the error is three times the scatter, a fifth at most. Three such groups are needed, and an
+///   interval is +- 0.02 at least.
+/// - An order counts as determined when its standard error is at most 1.
+///
+/// There is no interval where the rms residual of log e is above 0.2, where the error changes sign (a dip
+/// between larger errors on both sides), and where slopes rise or fall by more than 0.1 from the first pair
+/// of groups to the last: by less and less from pair to pair, or significantly (at 5%) against the scatter
+/// about a parabola in log h or log tau. Three groups cannot show that.
 ///
 /// Throws InputError, which says how many rows there are and how many are needed, when there are too few
 /// rows, nothing varies, or a number is not positive; NumericsError when the rows determine no order.

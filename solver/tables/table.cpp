@@ -19,8 +19,8 @@ const std::set<std::string> table_keys = {"schema",     "experiment", "paper", "
 const std::set<std::string> row_keys = {"cell",   "level",  "h",       "nodes",          "tau",
                                         "steps",  "status", "seconds", "peak_memory_mb", "errors",
                                         "values", "series", "labels"};
-const std::set<std::string> fit_keys = {"quantity", "norm",      "variable", "order",
-                                        "ci95",     "rows_used", "labels"};
+const std::set<std::string> fit_keys = {"quantity", "norm",      "variable", "order", "ci95",
+                                        "slopes",   "rows_used", "labels",   "remark"};
 
 Json number_or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -77,13 +77,15 @@ Json to_json(const Row& row) {
 
 Json to_json(const Fit& fit) {
   const std::string where = "fit of " + fit.quantity + ", " + fit.norm + ": ";
-  Json json = {
-      {"quantity", fit.quantity},
-      {"norm", fit.norm},
-      {"variable", fit.variable},
-      {"order", finite_number(fit.order, where + "order")},
-      {"ci95", {finite_number(fit.ci95[0], where + "ci95"), finite_number(fit.ci95[1], where + "ci95")}},
-      {"rows_used", fit.rows_used}};
+  Json json = {{"quantity", fit.quantity},  {"norm", fit.norm},
+               {"variable", fit.variable},  {"order", finite_number(fit.order, where + "order")},
+               {"ci95", nullptr},           {"slopes", Json::array()},
+               {"rows_used", fit.rows_used}};
+  if (fit.ci95)
+    json["ci95"] = {finite_number((*fit.ci95)[0], where + "ci95"),
+                    finite_number((*fit.ci95)[1], where + "ci95")};
+  for (double slope : fit.slopes) json["slopes"].push_back(finite_number(slope, where + "slopes"));
+  if (!fit.remark.empty()) json["remark"] = fit.remark;
   require_labels(fit.labels, where + "labels");
   if (!fit.labels.empty()) json["labels"] = fit.labels;
   return json;
@@ -155,6 +157,13 @@ Row row_from_json(const Json& json, const std::string& where) {
   return row;
 }
 
+std::optional<Interval> interval_from_json(const Json& json, const std::string& where) {
+  if (json.is_null()) return std::nullopt;
+  if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number())
+    throw InputError(where + ": key 'ci95': expected two numbers or null, found " + json.dump());
+  return Interval{json[0], json[1]};
+}
+
 Fit fit_from_json(const Json& json, const std::string& where) {
   const JsonReader reader(json, where);
   reader.accept_only(fit_keys);
@@ -163,11 +172,12 @@ Fit fit_from_json(const Json& json, const std::string& where) {
   fit.norm = reader.text("norm");
   fit.variable = reader.text("variable");
   fit.order = reader.number("order");
-  const Json& interval = reader.array("ci95");
-  if (interval.size() != 2 || !interval[0].is_number() || !interval[1].is_number())
-    throw InputError(where + ": key 'ci95': expected two numbers, found " + interval.dump());
-  fit.ci95[0] = interval[0];
-  fit.ci95[1] = interval[1];
+  fit.ci95 = interval_from_json(json.value("ci95", Json()), where);
+  for (const Json& slope : json.value("slopes", Json::array())) {
+    if (!slope.is_number()) reader.wrong_type("slopes", "numbers", slope);
+    fit.slopes.push_back(slope);
+  }
+  if (reader.has("remark")) fit.remark = reader.text("remark");
   fit.rows_used = reader.integer("rows_used");
   if (reader.has("labels")) fit.labels = labels_from_json(reader);
   return fit;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,10 +56,16 @@ void require_labels(const nlohmann::json& labels, const std::string& where);
 /// Throws InputError when the row has no such series or no such step.
 double maximum_from(const Row& row, const std::string& quantity, const std::string& norm, int first);
 
-/// A fitted order with its 95% interval.
+/// From the smallest to the largest value.
+using Interval = std::array<double, 2>;
+
+/// A fitted order (fit_orders.hpp).
 struct Fit {
   std::string quantity, norm, variable;  ///< variable: "h" | "tau"
-  double order = 0, ci95[2] = {0, 0};
+  double order = 0;
+  std::optional<Interval> ci95;
+  std::vector<double> slopes;  ///< between neighbours, coarse to fine
+  std::string remark;          ///< why there is no interval, or what the order means
   int rows_used = 0;
   nlohmann::json labels = nlohmann::json::object();  ///< of the rows; none when the table has but one variant
 };

@@ -88,13 +88,13 @@ TEST(AllOrders, OneRowOfALowerBdfSpoilsTheOrder) {
   claim.tolerance = 0.25;
   Table table;
   for (const int k : {3, 4, 5}) table.rows.push_back(coupled_row(3, k));
-  EXPECT_TRUE(check_claim(claim, table).met) << check_claim(claim, table).reason;
+  EXPECT_TRUE(check_claim(claim, table).met()) << check_claim(claim, table).reason;
   EXPECT_EQ(table.rows[0].values.at("unstable"), 0);
   // The run with 2 tau is that of the row before.
   EXPECT_NEAR(table.rows[1].values.at("u_nodal_H1_double"), table.rows[0].errors.at("u").at("nodal_H1"),
               1e-12);
   table.rows[2] = coupled_row(2, 5);
-  EXPECT_FALSE(check_claim(claim, table).met);
+  EXPECT_FALSE(check_claim(claim, table).met());
 }
 
 /// One run in space on the coarsest mesh.

@@ -31,7 +31,7 @@ Table sample_table() {
   table.experiment = "mcf_sphere";
   table.paper = "kll19";
   table.rows = {row("b", 1, 0.5, 0.05, 1e-3), row("a", 1, 0.5, 0.1, 8e-3), row("c", 2, 0.4, 0.1, 0.8 * 8e-3)};
-  table.fits = {{"x", "nodal_L2", "tau", 2.96, {2.9, 3}, 3}};
+  table.fits = {{"x", "nodal_L2", "tau", 2.96, Interval{2.9, 3}, {}, "", 3}};
   return table;
 }
 
@@ -112,8 +112,8 @@ TEST(Latex, OnlyOfWhatIsThere) {
 
 TEST(Latex, EachVariantHasItsFits) {
   Table table = sample_table();
-  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3}, 5, {{"flow", "kll"}}},
-                {"x", "nodal_L2", "tau", 1.1, {1, 1.2}, 5, {{"flow", "dziuk"}}}};
+  table.fits = {{"x", "nodal_L2", "tau", 2.9, Interval{2.8, 3}, {}, "", 5, {{"flow", "kll"}}},
+                {"x", "nodal_L2", "tau", 1.1, Interval{1, 1.2}, {}, "", 5, {{"flow", "dziuk"}}}};
   EXPECT_THAT(to_latex(table),
               HasSubstr("\\midrule\nfit, flow=dziuk & & $1.10$ \\\\\nfit, flow=kll & & $2.90$ \\\\\n"));
 }

@@ -46,7 +46,9 @@ Table sample_table() {
   table.parameters = {{"preset", "check"}};
   table.provenance = {{"version", "0.1.0"}};
   table.rows = {sample_row("h1_tau2", 0.4999999999999999, 0.1 / 3), sample_row("h1_tau3", 0.5, 0.05 / 3)};
-  table.fits = {{"x", "nodal_L2", "tau", 2.9, {2.8, 3.05}, 12, {{"flow", "dziuk"}, {"bdf", 4}}}};
+  table.fits = {
+      {"x", "nodal_L2", "tau", 2.9, Interval{2.8, 3.05}, {2.7, 3.1}, "", 12, {{"flow", "dziuk"}, {"bdf", 4}}},
+      {"x", "nodal_L2", "h", 2.5, {}, {2.4, 2.9}, "rising, 2.4 -> 2.9", 12}};
   return table;
 }
 
@@ -83,7 +85,10 @@ TEST(Table, RoundTripKeepsEveryBit) {
   EXPECT_EQ(again.rows[0].series, table.rows[0].series);
   EXPECT_EQ(again.rows[0].more, table.rows[0].more);
   EXPECT_EQ(again.rows[0].values, table.rows[0].values);
-  EXPECT_EQ(again.fits[0].ci95[1], 3.05);
+  EXPECT_EQ(again.fits[0].ci95, table.fits[0].ci95);
+  EXPECT_EQ(again.fits[0].slopes, table.fits[0].slopes);
+  EXPECT_FALSE(again.fits[1].ci95.has_value());
+  EXPECT_EQ(again.fits[1].remark, "rising, 2.4 -> 2.9");
   EXPECT_EQ(again.rows[0].labels, table.rows[0].labels);
   EXPECT_EQ(again.fits[0].labels, table.fits[0].labels);
 }
