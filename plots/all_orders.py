@@ -4,7 +4,7 @@
 Usage: python3 plots/all_orders.py results/paper/all_orders.json figures
 Writes figures/gallery/all_orders.{pdf,png}: for each flow one grid with the orders in tau, one with those in h in H1 and
 one with those in h in L2; a cell says the order of each of its quantities, its colour how far the lowest is from what is
-expected (q, k, k + 1).
+expected (q, k, k + 1). Errors in space are extrapolated to tau = 0 (experiments/all_orders.cpp).
 """
 import math
 
@@ -36,6 +36,8 @@ GRIDS = (
 # From one order too little to one too much; the middle is white, and lightness falls faster to the side of too little.
 DEVIATION = matplotlib.colors.LinearSegmentedColormap.from_list(
     "deviation", [(0, "#B2450E"), (0.3, "#F2B48A"), (0.44, "#FFFFFF"), (0.56, "#FFFFFF"), (1, "#CBE1F4")])
+NOTES = ("Orders in $h$ with BDF1, 2, 3: nodal values are extrapolated in $\\tau$ until their error in time is of order 4.\n"
+         "hidden: the steps cause more than a fifth of an error in space;   –: the errors determine no order")
 UNSTABLE = {"facecolor": "0.25", "edgecolor": "white"}
 HIDDEN = {"facecolor": "0.93", "edgecolor": "0.7", "hatch": "////"}
 
@@ -71,7 +73,7 @@ def is_hidden(rows, quantity, norm):
 def _figure(flows, rows, fits):
     width, line, row_gap, head = style.WIDTH, 0.104, 0.30, 0.30
     heights = [4 * (line * len(FLOWS[flow][1]) + 0.05) for flow in flows]
-    foot = 0.62
+    foot = 0.94
     height = head + sum(heights) + row_gap * len(flows) + foot
     figure = Figure(figsize=(width, height))
     left, gap = 0.30, 0.16
@@ -132,7 +134,7 @@ def _cell(axes, x, y, state, orders, hidden, expected):
         lowest = min(known) - expected if known else 0
         box(facecolor=DEVIATION(min(max((lowest + 1) / 2, 0.0), 1.0)), edgecolor="0.7")
         for row, (order, is_concealed) in enumerate(zip(orders, hidden)):
-            text = f"{order:.1f}".replace("-", "−") if order is not None else ("hid." if is_concealed else "–")
+            text = f"{order:.1f}".replace("-", "−") if order is not None else ("hidden" if is_concealed else "–")
             dark = lowest < -0.8
             write(text, row, len(orders), color="white" if dark else "black")
 
@@ -141,8 +143,9 @@ def _legend(figure, foot, height):
     samples = [(DEVIATION(0.0), "one order or more too low"), (DEVIATION(0.25), "half an order too low"),
                (DEVIATION(0.5), "as expected"), (DEVIATION(1.0), "one order or more above")]
     patches = [Patch(facecolor=colour, edgecolor="0.7", label=label) for colour, label in samples]
-    patches += [Patch(**UNSTABLE, label="unstable"), Patch(**HIDDEN, label="hidden by the error in time")]
-    figure.legend(handles=patches, loc="lower center", ncol=3, bbox_to_anchor=(0.5, 0.0), fontsize=8)
+    patches += [Patch(**UNSTABLE, label="unstable"), Patch(**HIDDEN, label="all hidden by the error in time")]
+    figure.legend(handles=patches, loc="lower center", ncol=3, bbox_to_anchor=(0.5, 0.30 / height), fontsize=8)
+    figure.text(0.5, 0.04 / height, NOTES, ha="center", va="bottom", fontsize=8)
 
 
 if __name__ == "__main__":

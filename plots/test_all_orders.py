@@ -77,7 +77,12 @@ class AllOrders(unittest.TestCase):
         self.assertEqual(cell_texts(self.figure, "dziuk space lifted_L2")[2, 0], ["hidden"])
         self.assertEqual(cell_texts(self.figure, "mean_curvature space lifted_L2")[0, 0], ["hidden"])
         legend, = self.figure.legends
-        self.assertIn("hidden by the error in time", [text.get_text() for text in legend.get_texts()])
+        self.assertIn("all hidden by the error in time", [text.get_text() for text in legend.get_texts()])
+
+    def test_the_legend_says_what_is_extrapolated_and_what_the_words_of_a_cell_mean(self):
+        texts = " ".join(text.get_text() for text in self.figure.texts)
+        for word in ("extrapolated", "hidden:", "–:"):
+            self.assertIn(word, texts)
 
     def test_one_hidden_quantity_beside_an_order(self):
         table = synthetic_table()
@@ -85,7 +90,7 @@ class AllOrders(unittest.TestCase):
         for each in table["rows"]:
             if label_of(each, "flow") == "cahn_hilliard":
                 each["values"]["w_lifted_H1_hidden"] = 1
-        self.assertEqual(cell_texts(draw(table), "cahn_hilliard space lifted_H1")[0, 2], ["1.0", "hid."])
+        self.assertEqual(cell_texts(draw(table), "cahn_hilliard space lifted_H1")[0, 2], ["1.0", "hidden"])
 
     def test_colour_says_what_is_too_low(self):
         table = synthetic_table()

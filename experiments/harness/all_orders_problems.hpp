@@ -35,27 +35,35 @@ struct OrdersOfFlow {
 /// All flows, in the order of the figures.
 const std::vector<OrdersOfFlow>& orders_of_flows();
 
+/// If a larger part of an error is caused by the steps, it is not the error in space.
+constexpr double largest_share = 0.2;
+
+/// Errors in space are extrapolated in tau until this order at least.
+constexpr int order_of_extrapolated = 4;
+
 /// One run.
 struct OrderRun {
   OrdersOfFlow flow;
   int degree, bdf;
-  bool in_time;     ///< order in tau, or in h
-  int level;        ///< of the mesh
-  int reference_k;  ///< in time: the small steps
+  bool in_time;           ///< order in tau, or in h
+  int level;              ///< of the mesh
+  int reference_k;        ///< in time: the small steps
+  int first_power = bdf;  ///< in space: of the error in tau, as extrapolation takes it
 };
 
 /// Fills in a row, of which level, tau and steps are known.
 ///
-/// In space: errors against the exact solution at the end time. values: "<quantity>_<norm>_share", about the
-/// part of the error that is caused by the steps, (difference between tau and 2 tau)/(2^q - 1)/error. Where
-/// this is more than `largest_share` the error does not show the order in h: it is stored as the value
+/// In space: errors against the exact solution at the end time. The nodal values of BDF1, 2 and 3 are
+/// extrapolated to tau = 0 from runs with tau, 2 tau, .. (richardson.hpp), of BDF1 with 2^0, .., 2^3 tau, so
+/// that the error in time is of order 4. The same from 2 tau, 4 tau, .. shows what the steps cause: values:
+/// "<quantity>_<norm>_share", about their part of the error, (difference of the two)/(2^p - 1)/error. p is q,
+/// and q + 1 for extrapolated values: one order more, not all those that are expected. Where this is more
+/// than `largest_share` the error does not show the order in h: it is stored as the value
 /// "<quantity>_<norm>_hidden" instead. In time: errors against small steps on the same mesh, with tau;
 /// values: "<quantity>_<norm>_double", those with 2 tau. Both: the value "unstable", 1 when a run ends before
 /// its time, or when the errors of one of the flow's quantities are larger with tau than with 2 tau (in
-/// space: ten times); the errors of an unstable row are values "<quantity>_<norm>_unstable".
+/// space: ten times, not extrapolated); the errors of an unstable row are values
+/// "<quantity>_<norm>_unstable".
 Row run_all_orders(const OrderRun& run, Row row);
-
-/// If a larger part of an error is caused by the steps, it is not the error in space.
-constexpr double largest_share = 0.2;
 
 }  // namespace esfem
