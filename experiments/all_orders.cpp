@@ -26,16 +26,19 @@
 // |nu_h| leaves 1, like exp(100t) at the hole), in time of an ellipsoid; bk22's evolving ellipsoid.
 //
 // Expected: q in tau; k in h in H1 (kll19 Theorem 6.1, nick18 Theorem 2.1, kll21 Theorem 4.1 for k >= 2, bk22
-// Theorem 4.1 for k >= 1), k + 1 in L2. All of it is observed, also for k = 1 and q = 1. Higher orders than
-// expected: positions and velocity of the growing sphere in h when k is even, and Willmore flow with k = 4 on
-// these coarse meshes (slopes 6.1, 5.0); those of BDF4 and 5 fall towards 4 and 5 with tau.
+// Theorem 4.1 for k >= 1), k + 1 in L2. All of it is observed, also for k = 1 and q = 1. But for Dziuk's
+// scheme the orders in h of BDF1 to 4 differ by 0.2 at most, as they should after the extrapolation in tau.
+// Higher than expected, in h: spheres for even k, k + 1 in H1 and k + 2 in L2 (not u); V = H² of the sphere
+// in H1 (2.1, 4.7, 5.2, 7.4); the self-shrinking torus with k = 4, 5.2 in H1 of x and H, 6 in L2; Willmore
+// flow with k = 4 on these coarse meshes (slopes 6.1, 5.0). In tau those of BDF4 and 5 fall towards 4 and 5.
 //
 // Dziuk's scheme is unstable with BDF4 and 5 unless tau/h² is small (dziuk_flow.hpp), so that coarse meshes
 // seem stable at large and at very small tau. BDF1 shows 0.5 to 0.8 of its order in H1, 1 in L2: fast
 // tangential modes have not decayed yet. In space its positions have order 1.9, 0.9, 1.4 in H1 with k = 2 and
-// BDF1, 2, 3; 2.4 to 2.6 with k = 3. Of its H with k = 2, 4 and BDF1, 2 the orders remain hidden.
+// BDF1, 2, 3; 2.4 to 2.6 with k = 3.
 //
-// Otherwise orders in h are the same for all BDF to 0.2, which shows that the extrapolation in tau is right.
+// Hidden: H in H1 of Dziuk's scheme with k = 2, 4 and BDF1, 2, with k = 4 also in L2 (BDF1: v, nu); nu in L2
+// of (5.1) with k = 4 and BDF1.
 //
 // With nu_h and z_h projected after each step Willmore flow on the Clifford torus is unstable with BDF5 for
 // tau from 0.0006 to 0.005 (BDF4 in one of two runs), and BDF3 is not.

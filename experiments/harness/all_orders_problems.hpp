@@ -57,13 +57,17 @@ struct OrderRun {
 /// extrapolated to tau = 0 from runs with tau, 2 tau, .. (richardson.hpp), of BDF1 with 2^0, .., 2^3 tau, so
 /// that the error in time is of order 4. The same from 2 tau, 4 tau, .. shows what the steps cause: values:
 /// "<quantity>_<norm>_share", about their part of the error, (difference of the two)/(2^p - 1)/error. p is q,
-/// and q + 1 for extrapolated values: one order more, not all those that are expected. Where this is more
-/// than `largest_share` the error does not show the order in h: it is stored as the value
-/// "<quantity>_<norm>_hidden" instead. In time: errors against small steps on the same mesh, with tau;
-/// values: "<quantity>_<norm>_double", those with 2 tau. Both: the value "unstable", 1 when a run ends before
-/// its time, or when the errors of one of the flow's quantities are larger with tau than with 2 tau (in
-/// space: ten times, not extrapolated); the errors of an unstable row are values
-/// "<quantity>_<norm>_unstable".
+/// and q + 1 for extrapolated values: one order more, not all those that are expected. What exact starting
+/// values add is of first order in tau, but in proportion to the error in space, so that it hides no order.
+/// Where the share is more than `largest_share` the error does not show the order in h: it is stored as the
+/// value "<quantity>_<norm>_hidden" instead.
+///
+/// In time: errors against small steps on the same mesh, with tau; values: "<quantity>_<norm>_double", those
+/// with 2 tau.
+///
+/// Both: the value "unstable", 1 when a run ends before its time, or when the errors of one of the flow's
+/// quantities are larger with tau than with 2 tau (in space: ten times, not extrapolated); the errors of an
+/// unstable row are values "<quantity>_<norm>_unstable".
 Row run_all_orders(const OrderRun& run, Row row);
 
 }  // namespace esfem
