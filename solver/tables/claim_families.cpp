@@ -142,10 +142,13 @@ std::string values_text(const std::string& expression, const std::vector<Values>
   return text;
 }
 
+/// Whether a member has all values of "when"; a list there is any of its values.
 bool has_values(const Values& values, const Json& when) {
   for (const auto& item : when.items()) {
     const auto found = values.find(item.key());
-    if (found == values.end() || found->second != item.value()) return false;
+    if (found == values.end()) return false;
+    const Json wanted = item.value().is_array() ? item.value() : Json{item.value()};
+    if (std::find(wanted.begin(), wanted.end(), found->second) == wanted.end()) return false;
   }
   return true;
 }

@@ -66,7 +66,7 @@ TEST(ClaimFamilies, OfSeveralBlocksHaveTheMembersOfAll) {
 TEST(ClaimFamilies, ExceptionsAreOfTheMembersThatHaveTheirValues) {
   json family = orders();
   family["except"] = {{{"when", {{"degree", 1}}}, {"source", {{"basis", "finding"}}}},
-                      {{"when", {{"degree", 1}, {"quantity", "nu"}}},
+                      {{"when", {{"degree", json::array({1, 7})}, {"quantity", "nu"}}},
                        {"tolerance", 0.8},
                        {"remark", "P{degree} only"},
                        {"presets", nullptr}}};
