@@ -97,7 +97,9 @@ class Checkpoint {
       std::vector<State> states;
       for (const nlohmann::json& state : run.at("states")) states.push_back(unpacked_state(state, initial));
       const int expected = std::min(past.capacity(), saved.n + 1), found = static_cast<int>(states.size());
-      if (found != expected) throw InputError(format("%d states, expected %d", found, expected));
+      // More than steps have been taken, where the run has started with those of an earlier one.
+      if (found < expected || found > past.capacity())
+        throw InputError(format("%d states, expected %d", found, expected));
       const std::string why_not = objection(saved);
       if (!why_not.empty()) throw InputError(why_not);
       load_attached(run.at("attached"));

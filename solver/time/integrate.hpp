@@ -7,6 +7,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "solver/error.hpp"
 #include "solver/time/checkpoint.hpp"
@@ -20,6 +21,11 @@ template <class State>
 struct StartingValues {
   State initial;
   std::function<State(double t)> exact;
+  /// Equal steps: the states before the initial one, newest first, as an earlier run of the same step size
+  /// has left them. With q - 1 of them or more, there are no starting steps.
+  std::vector<State> before = {};
+  /// Called after each substep of the starting steps, if there is one.
+  std::function<void(double t)> after_substep = {};
 
   StartingValues(State initial, std::function<State(double t)> exact = {})
       : initial(std::move(initial)), exact(std::move(exact)) {}
@@ -78,11 +84,11 @@ void take_step(Flow& flow, const BdfStep<typename Flow::State>& step, typename F
 /// `next`.
 template <class Flow>
 void take_substeps(Flow& flow, const UniformSteps& steps, int n, History<typename Flow::State>& past,
-                   typename Flow::State& next) {
+                   typename Flow::State& next, const std::function<void(double t)>& after_substep) {
   const int K = steps.start.substeps_per_step;
   for (int k = 1; k <= K; ++k) {
     const int m = (n - 1) * K + k;
-    next.t = (steps.first + static_cast<double>(m) / K) * steps.tau;
+    next.t = steps.start_time + (steps.first + static_cast<double>(m) / K) * steps.tau;
     try {
       take_step(flow, past.equal_step(std::min(m, steps.order), steps.tau / K, next.t), next);
       settle(flow, past, next);
@@ -91,6 +97,7 @@ void take_substeps(Flow& flow, const UniformSteps& steps, int n, History<typenam
     } catch (const NumericsError& error) {
       throw NumericsError(format("starting substep %d of %d: %s", k, K, error.what()));
     }
+    if (after_substep) after_substep(next.t);
     if (k < K) {
       past.push(next);
     } else {
@@ -117,26 +124,32 @@ void find_starting_value(Flow& flow, const UniformSteps& steps,
     settle(flow, past, next);
     break;
   case Start::substeps:
-    take_substeps(flow, steps, n, fine, next);
+    take_substeps(flow, steps, n, fine, next, start.after_substep);
     break;
   }
   next.t = t;
 }
 
-/// Finds the states 0..q-1 (fewer when the run is shorter) and pushes them to `past`. Returns false when
-/// observe(n, state) ends the run.
+/// Finds the states 0..q-1 (fewer when the run is shorter) and pushes them to `past`; state 0 alone when
+/// those before it are known. Returns false when observe(n, state) ends the run.
 template <class Flow, class Observe>
 bool take_starting_steps(Flow& flow, const UniformSteps& steps,
                          const StartingValues<typename Flow::State>& start, const Observe& observe,
                          History<typename Flow::State>& past, RunPosition& done) {
-  if (steps.start.kind == Start::exact && steps.order > 1 && steps.steps > 0 && !start.exact)
+  const bool has_past = steps.order > 1 && static_cast<int>(start.before.size()) >= steps.order - 1;
+  const int starting_states = has_past ? 1 : steps.order;
+  if (steps.start.kind == Start::exact && starting_states > 1 && steps.steps > 0 && !start.exact)
     throw InputError("start exact: there is no exact solution; expected start cascade or substeps:K");
   typename Flow::State next = start.initial;
   next.t = steps.time(0);
   History<typename Flow::State> fine(steps.order);
   fine.push(next);
+  for (int j = has_past ? steps.order - 1 : 0; j > 0; --j) {
+    typename Flow::State earlier = start.before[j - 1];
+    past.push(earlier);
+  }
   bool goes_on = true;
-  for (int n = 0; goes_on && n < steps.order && n <= steps.steps; ++n)
+  for (int n = 0; goes_on && n < starting_states && n <= steps.steps; ++n)
     at_step(n, steps.time(n), [&] {
       if (n > 0) find_starting_value(flow, steps, start, n, past, fine, next);
       check_finite(next);
@@ -314,9 +327,13 @@ struct StepCount {
 /// the flow's resume(progress()) restores what earlier steps have left in it. The data of observers are saved
 /// in the same way. The checkpoint is saved at intervals, when the run is stopped, and at its end; with
 /// adaptive steps at the last state whose steps do not depend on the end time. A checkpoint serves one run.
+///
+/// This function leaves in `past` (empty, of capacity states_kept(steps)) the states at the end, also when
+/// the run ends with an error: then those before the step that failed.
 template <class Steps = UniformSteps, class Flow, class... Observers>
-StepCount integrate(Flow& flow, const Steps& steps, const StartingValues<typename Flow::State>& start,
-                    Checkpoint* checkpoint, Observers&&... observers) {
+StepCount integrate_keeping(History<typename Flow::State>& past, Flow& flow, const Steps& steps,
+                            const StartingValues<typename Flow::State>& start, Checkpoint* checkpoint,
+                            Observers&&... observers) {
   using State = typename Flow::State;
   check_steps(steps);
   const auto observe = [&](int n, const State& state) {
@@ -324,11 +341,10 @@ StepCount integrate(Flow& flow, const Steps& steps, const StartingValues<typenam
     ((goes_on = goes_on_after(observers, n, state) && goes_on), ...);
     return goes_on;
   };
-  History<State> past(states_kept(steps));
   RunPosition done;
   if constexpr (std::is_same_v<Steps, AdaptiveSteps>) done.tau = steps.first_step;
   State next = start.initial;
-  next.t = 0;
+  if constexpr (std::is_same_v<Steps, AdaptiveSteps>) next.t = steps.start_time;
   if constexpr (std::is_same_v<Steps, UniformSteps>) next.t = steps.time(0);
   if constexpr (std::is_same_v<Steps, GivenTimes>) next.t = steps.times[0];
 
@@ -339,8 +355,11 @@ StepCount integrate(Flow& flow, const Steps& steps, const StartingValues<typenam
     is_resumed = checkpoint->resume(identity_of_steps(steps), next, past, done,
                                     [&](const RunPosition& saved) { return objection_of_end(steps, saved); });
   }
-  if (!is_resumed)
-    goes_on = take_starting_steps(flow, steps, StartingValues<State>(next, start.exact), observe, past, done);
+  if (!is_resumed) {
+    StartingValues<State> at_start = start;
+    at_start.initial.t = next.t;
+    goes_on = take_starting_steps(flow, steps, at_start, observe, past, done);
+  }
 
   while (goes_on && !is_at_end(steps, done, past)) {
     if (checkpoint && can_be_resumed(steps, done, past))
@@ -359,6 +378,14 @@ StepCount integrate(Flow& flow, const Steps& steps, const StartingValues<typenam
   if (!is_at_end(steps, done, past))
     throw StoppedError(format("stopped at t = %g (step %d)", past.back(0).t, done.n));
   return {done.n, done.rejected};
+}
+
+/// The same for a run whose past is not needed afterwards.
+template <class Steps = UniformSteps, class Flow, class... Observers>
+StepCount integrate(Flow& flow, const Steps& steps, const StartingValues<typename Flow::State>& start,
+                    Checkpoint* checkpoint, Observers&&... observers) {
+  History<typename Flow::State> past(states_kept(steps));
+  return integrate_keeping<Steps>(past, flow, steps, start, checkpoint, observers...);
 }
 
 /// The same without checkpoint.

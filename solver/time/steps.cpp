@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/time/steps.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -41,13 +42,18 @@ void check_steps(const UniformSteps& steps) {
     throw InputError(format("step size tau = %g: expected a positive number", steps.tau));
   if (steps.steps < 0) throw InputError(format("%d steps: expected 0 or more", steps.steps));
   if (steps.first < 0) throw InputError(format("first state %d: expected 0 or more", steps.first));
+  if (!std::isfinite(steps.start_time))
+    throw InputError(format("time %g at the start: expected a finite number", steps.start_time));
   if (steps.start.substeps_per_step < 1)
     throw InputError(format("%d substeps per step: expected 1 or more", steps.start.substeps_per_step));
 }
 
 nlohmann::json identity_of_steps(const UniformSteps& steps) {
-  return {
-      {"order", steps.order}, {"tau", steps.tau}, {"start", to_string(steps.start)}, {"first", steps.first}};
+  return {{"order", steps.order},
+          {"tau", steps.tau},
+          {"start", to_string(steps.start)},
+          {"first", steps.first},
+          {"start_time", steps.start_time}};
 }
 
 std::string objection_of_end(const UniformSteps& steps, const RunPosition& done) {
@@ -76,8 +82,9 @@ std::string objection_of_end(const GivenTimes& steps, const RunPosition& done) {
 void check_steps(const AdaptiveSteps& steps) {
   if (steps.order < 1 || steps.order > 2)
     throw InputError(format("BDF order %d with adaptive steps: expected 1 or 2", steps.order));
-  if (!(steps.end_time >= 0) || !std::isfinite(steps.end_time))
-    throw InputError(format("end time %g: expected a number >= 0", steps.end_time));
+  if (!(steps.start_time >= 0 && steps.end_time >= steps.start_time) || !std::isfinite(steps.end_time))
+    throw InputError(
+        format("end time %g: expected a number >= %g", steps.end_time, std::max(0.0, steps.start_time)));
   if (!(steps.tolerance > 0) || !std::isfinite(steps.tolerance))
     throw InputError(format("tolerance %g: expected a positive number", steps.tolerance));
   if (!(steps.first_step > 0) || !std::isfinite(steps.first_step) ||
@@ -95,7 +102,8 @@ void check_steps(const AdaptiveSteps& steps) {
 nlohmann::json identity_of_steps(const AdaptiveSteps& steps) {
   return {{"controlled", steps.controlled},     {"order", steps.order},
           {"tolerance", steps.tolerance},       {"first_step", steps.first_step},
-          {"largest_step", steps.largest_step}, {"units", steps.units}};
+          {"largest_step", steps.largest_step}, {"units", steps.units},
+          {"start_time", steps.start_time}};
 }
 
 std::string objection_of_end(const AdaptiveSteps& steps, const RunPosition& done) {

@@ -27,11 +27,12 @@ struct UniformSteps {
   double tau = 0;
   int steps = 0;  ///< starting steps counted
   Start start = {};
-  int first = 0;  ///< state n is that at t = (first + n) tau
+  int first = 0;          ///< state n is that at t = start_time + (first + n) tau
+  double start_time = 0;  ///< of a run whose initial state is not one of t = 0
 
-  double time(int n) const { return (first + n) * tau; }
+  double time(int n) const { return start_time + (first + n) * tau; }
 };
-/// Throws InputError unless 1 <= order <= 5, tau > 0, steps >= 0, first >= 0, K >= 1.
+/// Throws InputError unless 1 <= order <= 5, tau > 0, steps >= 0, first >= 0, K >= 1, start_time is finite.
 void check_steps(const UniformSteps& steps);
 
 /// Steps whose size follows the solution. The error of a step is estimated by the root mean square over the
@@ -47,9 +48,10 @@ struct AdaptiveSteps {
   double first_step = 1e-6;        ///< not controlled itself; a hundredth of it is the smallest step
   double largest_step = 0;         ///< 0: no bound
   std::vector<double> units = {};  ///< of the components of the controlled field; empty: 1
+  double start_time = 0;           ///< of the initial state
 };
-/// Throws InputError unless order is 1 or 2, end_time >= 0, tolerance > 0, end_time/10^12 <= first_step,
-/// units > 0 and, where a largest step is given, first_step <= largest_step.
+/// Throws InputError unless order is 1 or 2, end_time >= start_time >= 0, tolerance > 0, end_time/10^12 <=
+/// first_step, units > 0 and, where a largest step is given, first_step <= largest_step.
 void check_steps(const AdaptiveSteps& steps);
 
 /// Steps from each time to the next; state n is that at times[n].

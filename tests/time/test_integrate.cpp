@@ -50,6 +50,43 @@ TEST(Integrate, ShowsItsOrderFromExactStartingValues) {
   }
 }
 
+TEST(Integrate, GoesOnFromTheStatesOfAnEarlierRunBitForBit) {
+  for (int q = 1; q <= max_bdf_order; ++q) {
+    LinearOde ode;
+    const auto until = [&](UniformSteps steps, const StartingValues<LinearOde::State>& start,
+                           History<LinearOde::State>& past) {
+      integrate_keeping(past, ode, steps, start, nullptr, [](int, const LinearOde::State&) {});
+    };
+    const UniformSteps whole = {q, 0.1, 12, substeps16, 0, 0.3};
+    History<LinearOde::State> expected(q), middle(q), end(q), alone(q);
+    until(whole, {LinearOde::exact(0)}, expected);
+    UniformSteps part = whole;
+    part.steps = 7;
+    until(part, {LinearOde::exact(0)}, middle);
+    EXPECT_EQ(middle.back(0).t, whole.time(7));
+    StartingValues<LinearOde::State> start(middle.back(0));
+    part = {q, 0.1, 5, exact, 7, 0.3};
+    if (q > 1) {
+      EXPECT_THROW(until(part, start, alone), InputError) << "the states before are not known";
+    }
+    for (int j = 1; j < q; ++j) start.before.push_back(middle.back(j));
+    until(part, start, end);
+    EXPECT_EQ(end.back(0).t, expected.back(0).t);
+    EXPECT_EQ(end.back(0).x, expected.back(0).x) << q;
+    EXPECT_EQ(end.back(0).u, expected.back(0).u) << q;
+  }
+}
+
+TEST(Integrate, ShowsTheSubstepsOfTheStart) {
+  LinearOde ode;
+  StartingValues<LinearOde::State> start(LinearOde::exact(0));
+  std::vector<double> times;
+  start.after_substep = [&](double t) { times.push_back(t); };
+  integrate(ode, UniformSteps{3, 0.5, 4, {Start::substeps, 2}, 0, 1}, start,
+            [](int, const LinearOde::State&) {});
+  EXPECT_THAT(times, testing::ElementsAre(1.25, 1.5, 1.75, 2));
+}
+
 TEST(Integrate, ExtrapolationOfALowerOrderShows) {
   for (int q = 2; q <= max_bdf_order; ++q) {
     const double order = observed_order(q, exact, 1);
