@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,7 @@ struct MeshFile {
   MeshOrigin origin;
   std::vector<std::string> remarks = {};  ///< what the reader changed
   NodalFields fields = {};                ///< nodal values that the file has; nan where it has none
+  std::optional<double> t = {};           ///< the time, where the file says it
 };
 
 /// Reads the content of a Gmsh file, MSH 2.2 or 4.1, ASCII or binary.

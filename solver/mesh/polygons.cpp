@@ -135,6 +135,7 @@ void cut(const std::vector<Vec3>& x, const Corners& corners, Triangles& triangle
 MeshFile triangulated(Polygons&& polygons) {
   MeshFile result;
   result.origin = std::move(polygons.origin);
+  result.fields = std::move(polygons.fields);
   MeshOrigin& origin = result.origin;
   const std::vector<int> lines = std::move(origin.element_lines);
   const std::vector<long> tags = std::move(origin.element_tags);

@@ -14,6 +14,7 @@ struct Polygons {
   std::vector<int> sizes;     ///< how many corners each polygon has
   long first = 0;             ///< the file's number of its first point
   MeshOrigin origin;          ///< source, lines and, where they are not positions, numbers
+  NodalFields fields = {};    ///< values of the points
 };
 
 /// The triangles of the polygons, degree 1, in their order; quadrangles are cut along the diagonal that gives

@@ -78,8 +78,8 @@ ReadMesh read_mesh(const std::string& file) {
   MeshFile read = parse(file, content_of(file));
   const std::string remark = repair_and_check(read);
   std::vector<long> node_numbers = numbers_of(read.origin);
-  return {std::move(read.mesh), remark, std::move(read.fields), std::move(node_numbers),
-          std::move(read.origin)};
+  return {std::move(read.mesh),   remark, std::move(read.fields), std::move(node_numbers),
+          std::move(read.origin), read.t};
 }
 
 std::string check_closed_surface(Mesh& mesh, const std::string& source) {

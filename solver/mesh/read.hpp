@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct ReadMesh {
   NodalFields fields;              ///< nodal values that the file has; nan where it has none
   std::vector<long> node_numbers;  ///< the file's own (tags, or counted from 1); empty when they are 1, 2, ..
   MeshOrigin origin;               ///< names its elements
+  std::optional<double> t;         ///< the time of a snapshot of write_vtu
 };
 
 /// Reads a closed triangulated surface of one or several components: Gmsh MSH 2.2 and 4.1, ASCII

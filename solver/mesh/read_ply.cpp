@@ -2,10 +2,13 @@
 // The grammar of [Turk. The PLY Polygon File Format. 1994]: a head of lines
 //   ply | format KIND 1.0 | comment .. | obj_info .. | element NAME COUNT | property TYPE NAME
 //   | property list TYPE TYPE NAME | end_header
-// then the elements in this order, in ASCII one a line, in binary without gaps. Properties that are not read
-// are skipped, whatever their values are.
+// then the elements in this order, in ASCII one a line, in binary without gaps. Real properties of a vertex
+// are nodal values, NAME_x, NAME_y, NAME_z together those of a vector; normals nx, ny, nz are for shading.
+// Other properties are skipped, whatever their values are.
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <set>
 
 #include "solver/error.hpp"
 #include "solver/mesh/bytes.hpp"
@@ -197,14 +200,43 @@ void skip_property(Source& source, const PlyProperty& property) {
   source.skip(property.type, property.list ? ply_count(source, property) : 1);
 }
 
+bool is_nodal_value(const PlyProperty& property) {
+  static const std::set<std::string> others = {"x", "y", "z", "nx", "ny", "nz"};
+  return !property.list && property.type >= ply_float32 && !others.count(property.name);
+}
+
+/// From their values (names x points).
+NodalFields nodal_fields(const std::vector<std::string>& names, const Field& values) {
+  const auto place = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) - names.begin();
+  };
+  const long count = long(names.size());
+  NodalFields fields;
+  for (long i = 0; i < count; ++i) {
+    const std::string stem = names[i].substr(0, std::max<std::size_t>(names[i].size(), 2) - 2);
+    const long x = place(stem + "_x"), y = place(stem + "_y"), z = place(stem + "_z");
+    if (!stem.empty() && x < count && y < count && z < count && (i == x || i == y || i == z)) {
+      if (i == x) fields.push_back({stem, values(std::vector<long>{x, y, z}, Eigen::all).transpose()});
+    } else {
+      fields.push_back({names[i], values.row(i).transpose()});
+    }
+  }
+  return fields;
+}
+
+/// Appends the nodal values to `values`.
 template <class Source>
-void read_ply_vertex(Source& source, const PlyElement& element, Polygons& result) {
+void read_ply_vertex(Source& source, const PlyElement& element, Polygons& result,
+                     std::vector<double>& values) {
   Vec3 x;
   for (const PlyProperty& property : element.properties) {
     const std::size_t i =
         property.name.size() == 1 ? std::string("xyz").find(property.name) : std::string::npos;
     if (i == std::string::npos) {
-      skip_property(source, property);
+      if (is_nodal_value(property))
+        values.push_back(source.value(property.type, "a nodal value"));
+      else
+        skip_property(source, property);
       continue;
     }
     x[long(i)] = source.value(property.type, "a coordinate");
@@ -240,12 +272,17 @@ void read_ply_face(Source& source, const PlyElement& element, Polygons& result) 
 
 template <class Source>
 void read_ply_elements(Source source, const PlyHead& head, Polygons& result) {
+  std::vector<std::string> names;
+  std::vector<double> values;
   for (const PlyElement& element : head.elements) {
     if (element.properties.empty()) continue;
+    if (element.name == "vertex")
+      for (const PlyProperty& property : element.properties)
+        if (is_nodal_value(property)) names.push_back(property.name);
     for (long i = 0; i < element.count; ++i) {
       source.start(format("%s %ld of %ld", element.name.c_str(), i + 1, element.count));
       if (element.name == "vertex")
-        read_ply_vertex(source, element, result);
+        read_ply_vertex(source, element, result, values);
       else if (element.name == "face")
         read_ply_face(source, element, result);
       else
@@ -254,6 +291,9 @@ void read_ply_elements(Source source, const PlyHead& head, Polygons& result) {
     }
   }
   source.finish_file();
+  if (!names.empty())
+    result.fields = nodal_fields(
+        names, Eigen::Map<const Field>(values.data(), long(names.size()), long(result.points.size())));
 }
 
 /// Throws InputError unless the head declares points in space and polygons.

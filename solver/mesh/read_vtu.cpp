@@ -95,6 +95,7 @@ VtuArray array_of(VtuHead& head, const std::string& type = "", const std::string
 struct VtuDescription {
   bool little_endian;
   std::size_t points, cells;
+  std::optional<VtuArray> time;
   std::vector<VtuArray> fields;
   VtuArray nodes, connectivity, ends, types;
 };
@@ -109,7 +110,10 @@ VtuDescription description_of(VtuHead& head) {
               "\" header_type=\"UInt64\">");
   head.expect("<UnstructuredGrid>");
   head.expect("<FieldData>");
-  while (head.line() != "</FieldData>") array_of(head);
+  while (head.line() != "</FieldData>") {
+    VtuArray array = array_of(head);
+    if (array.name == "TimeValue" && array.type == "Float64") vtu.time = std::move(array);
+  }
   head.next();
   if (!starts_with(head.line(), "<Piece ")) head.fail("<Piece ...>");
   vtu.points = head.number("NumberOfPoints");
@@ -208,6 +212,7 @@ MeshFile parse_vtu(const std::string& file, const std::string& content) {
   for (const VtuArray& field : vtu.fields)
     if (field.components == 1 || field.components == 3)
       result.fields.push_back({field.name, arrays.read<double>(field, vtu.points, field.components)});
+  if (vtu.time) result.t = arrays.read<double>(*vtu.time, 1, 1)(0);
   return result;
 }
 

@@ -117,6 +117,32 @@ TEST(ReadPly, SkipsWhatItDoesNotNeed) {
   EXPECT_THAT(complaint(binary + "more"), HasSubstr("4 bytes after the last element"));
 }
 
+TEST(ReadPly, RealPropertiesOfVerticesAreNodalValues) {
+  const std::string names[] = {"nu_x", "x", "u", "nu_z", "y", "nx", "a_y", "z", "nu_y"};
+  std::string text = "ply\nformat ascii 1.0\nelement vertex 43\n";
+  for (const std::string& name : names) text += "property double " + name + "\n";
+  text += "element face 80\nproperty list uchar int vertex_index\nend_header\n";
+  const Field& x = ellipsoid.nodes;
+  for (int i = 0; i < 43; ++i) {  // the last one is in no face
+    const int j = std::min(i, 41);
+    text +=
+        format("%d %.17g %d.5 %d %.17g 7 3 %.17g %d\n", i, x(j, 0), i, i + 200, x(j, 1), x(j, 2), i + 100);
+  }
+  for (int e = 0; e < 80; ++e) text += "3 " + corners(ellipsoid, e, 0) + "\n";
+  MeshFile read = parse_ply("input", text);
+  repair_and_check(read);
+  ASSERT_EQ(read.fields.size(), 3u);
+  const Field &nu = *find(read.fields, "nu"), &u = *find(read.fields, "u"), &a_y = *find(read.fields, "a_y");
+  ASSERT_EQ(nu.rows(), 42);
+  ASSERT_EQ(nu.cols(), 3);
+  ASSERT_EQ(u.rows(), 42);
+  for (int i = 0; i < 42; ++i) {
+    EXPECT_EQ(nu.row(i), Eigen::RowVector3d(i, i + 100, i + 200));
+    EXPECT_EQ(u(i, 0), i + 0.5);
+    EXPECT_EQ(a_y(i, 0), 3);
+  }
+}
+
 TEST(ReadPly, RefusesHeads) {
   const auto head = [](const std::string& from, const std::string& to) {
     return complaint(replaced(plain, from, to));

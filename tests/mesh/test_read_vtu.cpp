@@ -49,6 +49,7 @@ TEST_P(ReadVtuDegrees, GivesTheSameBits) {
   EXPECT_EQ(read.mesh.nodes, mesh.nodes);
   EXPECT_EQ(read.mesh.elements, mesh.elements);
   const NodalFields expected = fields_on(mesh);
+  EXPECT_EQ(read.t, 0.1);
   ASSERT_EQ(read.fields.size(), 2u);
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(read.fields[i].name, expected[i].name);
