@@ -7,7 +7,7 @@
 namespace esfem {
 
 /// Exit codes of every executable.
-enum ExitCode { exit_done = 0, exit_usage = 1, exit_numerics = 2, exit_claim = 3 };
+enum ExitCode { exit_done = 0, exit_usage = 1, exit_numerics = 2, exit_claim = 3, exit_signal = 128 };
 
 /// Wrong usage or bad input (exit 1). The message is one line: what was found, where, and what was expected.
 struct InputError : std::runtime_error {
@@ -35,8 +35,8 @@ struct ExtinctionError : NumericsError {
   ExtinctionError at(int step, double t) const;  ///< the message, with step and time behind it
 };
 
-/// A run was asked to stop and has stopped after a whole step; its results are valid (exit 2: it is not
-/// finished).
+/// A run was asked to stop and has stopped after a whole step; its results are valid (by a signal:
+/// exit_signal and its number, 130 for SIGINT, 143 for SIGTERM).
 struct StoppedError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

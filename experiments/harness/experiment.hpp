@@ -53,7 +53,7 @@ inline std::string checkpoint_file(const std::string& folder) {
 int run_experiment(const Experiment& experiment, int argc, char** argv);
 
 /// Runs `body` and maps exceptions to a one-line message on standard error and an exit code: InputError 1,
-/// everything else 2.
+/// StoppedError after a signal 128 and its number, as shells do, everything else 2.
 int guarded_main(const std::function<int()>& body);
 
 }  // namespace esfem

@@ -37,7 +37,13 @@ void RunRecorder::record(int n, double t, const Field& x, NodalFields fields) {
 bool RunRecorder::is_due(int n, double t) {
   if (!collection_) return false;
   bool due = n == 0 || (plan_.every > 0 && n % plan_.every == 0);
+  due = due || multiples(t) > multiples(newest_.t);
   return pass_times(t) || due;
+}
+
+/// How many multiples of every_time have been reached at time t, up to round-off.
+double RunRecorder::multiples(double t) const {
+  return plan_.every_time > 0 ? std::floor(t / plan_.every_time * (1 + 1e-9)) : 0;
 }
 
 bool RunRecorder::pass_times(double t) {

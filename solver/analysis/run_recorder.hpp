@@ -12,14 +12,16 @@
 
 namespace esfem {
 
-/// When a run's surface is written: at the first step at or after each of `times` and at every `every`-th
-/// step (0: none); in any case at the start and at the end.
+/// When a run's surface is written: at the first step at or after each of `times` and each multiple of
+/// `every_time` (0: none), and at every `every`-th step (0: none); in any case at the start and at the end.
+/// The steps of the run do not change.
 struct SnapshotPlan {
   std::string pvd;  ///< the collection, "run.pvd"; empty: no snapshots are wanted
   std::vector<double> times;
   int every = 0;
   RunLabel run = {};           ///< description of the run in each snapshot
   Vec3 origin = Vec3::Zero();  ///< is added to the positions of snapshots
+  double every_time = 0;
 };
 
 /// Records a run on one mesh: a time series, snapshots, and the newest surface. A step that cannot be
@@ -67,6 +69,7 @@ class RunRecorder {
   void finish();
 
   Series& series() { return series_; }
+  const Series& series() const { return series_; }
   /// Whether a step has been recorded.
   bool empty() const { return newest_.x.size() == 0; }
   const Surface& newest() const { return newest_; }
@@ -87,6 +90,7 @@ class RunRecorder {
  private:
   bool is_due(int n, double t);
   bool pass_times(double t);
+  double multiples(double t) const;
   void write_newest();
 
   const SurfaceSpace& space_;
