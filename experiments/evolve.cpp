@@ -11,6 +11,7 @@
 // its keys.
 #include <signal.h>
 
+#include <chrono>
 #include <cstdio>
 #include <iostream>
 #include <optional>
@@ -61,7 +62,21 @@ std::string stopped_status(const RunRecorder& recorder) {
                 recorder.newest().t, recorder.newest().step);
 }
 
+/// Runs the flow; returns the status. Throws what ends it early.
+std::string run_to_end(const Run& run) {
+  try {
+    run.config.entry->run(run);
+  } catch (const StoppedError&) {
+    if (run.outcome.ended.empty()) throw;
+  }
+  compare_curvature(run);
+  const std::string& remark = run.outcome.remark;
+  const std::string status = run.outcome.ended.empty() ? "ok" : run.outcome.ended;
+  return remark.empty() ? status : status + ", but " + remark;
+}
+
 int evolve(const std::string& file, const json& origin) {
+  const auto begin = std::chrono::steady_clock::now();
   const json config_json = read_json(file);
   const EvolveConfig config = evolve_config(config_json, file);
   prepare_outputs(config, config_json, file);
@@ -76,40 +91,36 @@ int evolve(const std::string& file, const json& origin) {
       config.entry->records_kappa_energy ? RunRecorder::of_flow_and_surface : RunRecorder::of_the_flow);
   std::optional<Checkpoint> checkpoint = checkpoint_of(config, config_json, recorder);
   warn(start_remark(config));
-  if (config.entry->evolves_curvature && !config.surface && start_values(config, {"nu", "H"}).size() == 0)
-    warn("no exact surface is given: nu and H at the start are computed on the discrete surface");
-  std::string remark;
+  warn(curvature_start_remark(config));
+  Outcome outcome;
   if (checkpoint)
-    checkpoint->attach([&] { return json(remark); },
-                       [&](const json& saved) { remark = saved.get<std::string>(); });
-  const Run asked = {config, space, recorder, checkpoint ? &*checkpoint : nullptr, remark};
+    checkpoint->attach([&] { return json(outcome.remark); },
+                       [&](const json& saved) { outcome.remark = saved.get<std::string>(); });
+  const Run asked = {config, space, recorder, checkpoint ? &*checkpoint : nullptr, outcome};
   std::vector<std::string> failures;
+  const auto write = [&](const std::string& status) {
+    failures = write_outputs(asked, status, config_json, origin, failures);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
+    if (failures.empty()) warn(joined({outcome.ended, summary(asked, elapsed.count())}));
+  };
   note_stop_signals();
   try {
-    config.entry->run(asked);
-    compare_curvature(asked);
-    failures =
-        write_outputs(config, recorder, remark.empty() ? "ok" : "ok, but " + remark, config_json, origin);
+    write(run_to_end(asked));
   } catch (const NumericsError& error) {
     const std::string status = end_of(config, recorder, error);
-    if (!recorder.empty()) {
-      failures = write_outputs(config, recorder, status, config_json, origin);
-      warn(failures.empty() ? format("the results up to t = %g have been written", recorder.newest().t)
-                            : joined(failures, config));
-    }
+    if (!recorder.empty()) write(status);
+    if (!failures.empty()) warn(joined({joined(failures), how_to_go_on(asked, failures)}));
     throw NumericsError(status);
   } catch (const StoppedError&) {
     const std::string status = stopped_status(recorder);
-    failures = write_outputs(config, recorder, status, config_json, origin);
-    failures.insert(failures.begin(), status);
-    throw StoppedError(joined(failures, config));
+    write(status);
+    throw StoppedError(joined({status, joined(failures), how_to_go_on(asked, failures)}));
   } catch (const InputError& error) {
     if (recorder.empty()) throw;
-    failures =
-        write_outputs(config, recorder, format("stopped at t = %g: %s", recorder.newest().t, error.what()),
-                      config_json, origin, {error.what()});
+    failures = {error.what()};
+    write(format("stopped at t = %g: %s", recorder.newest().t, error.what()));
   }
-  if (!failures.empty()) throw InputError(joined(failures, config));
+  if (!failures.empty()) throw InputError(joined({joined(failures), how_to_go_on(asked, failures)}));
   return exit_done;
 }
 

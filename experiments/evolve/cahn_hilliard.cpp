@@ -57,6 +57,7 @@ Entry cahn_hilliard_entry(const std::string& problem) {
   entry.problem = problem;
   entry.fields = "u, w";
   entry.time_power = 3;
+  entry.has_given_motion = true;
   entry.cure = smaller_steps_or_even_elements;
   return entry;
 }

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 
+#include "experiments/evolve/initial.hpp"
 #include "experiments/evolve/mesh.hpp"
+#include "experiments/evolve/series_lines.hpp"
+#include "experiments/evolve/start.hpp"
 #include "experiments/evolve/units.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
@@ -102,6 +105,31 @@ void read_limits(const JsonReader& reader, EvolveConfig& config) {
   read("normal_length", 1, config.limits.normal_length);
 }
 
+/// "stop": when a run ends before its last step.
+void read_stop(const JsonReader& reader, EvolveConfig& config) {
+  reader.accept_only({"speed", "seconds", "area"});
+  if (reader.has("speed")) config.stop.speed = positive_or(reader, "speed", 0);
+  if (reader.has("seconds")) config.stop.seconds = positive_or(reader, "seconds", 0);
+  if (!reader.has("area")) return;
+  config.stop.area = positive_or(reader, "area", 0);
+  if (*config.stop.area == 1)
+    throw InputError(reader.where() +
+                     ": found area = 1, the one at the start; expected a smaller or a larger number");
+}
+
+/// "history" of the output: whether the nodal values have those of the past, so that a run can go on from
+/// them.
+bool wants_history(const JsonReader& output, const EvolveConfig& config) {
+  const bool is_possible = !config.adaptive && !config.nodal.empty();
+  if (!output.has("history")) return is_possible && config.nodal != "-";
+  const bool wanted = output.truth_or("history", false);
+  if (wanted && !is_possible)
+    throw InputError(output.where() + ": found history = true" +
+                     (config.adaptive ? " and adaptive steps; expected equal steps (tau), or a checkpoint"
+                                      : "; expected the key nodal, too"));
+  return wanted;
+}
+
 /// Empty when the key is not there.
 std::string file_name(const JsonReader& output, const std::string& key) {
   if (!output.has(key)) return "";
@@ -109,30 +137,37 @@ std::string file_name(const JsonReader& output, const std::string& key) {
   throw InputError(output.where() + ": found " + key + " = \"\"; expected the name of a file");
 }
 
-/// "every" and "times" of the output; they need "vtu".
+/// "every", "every_time" and "times" of the output; they need "vtu".
 SnapshotPlan snapshot_plan(const JsonReader& output) {
   SnapshotPlan plan;
   plan.pvd = file_name(output, "vtu");
   plan.every = output.integer_within("every", 0, 0, 100000000);
+  if (output.has("every_time")) plan.every_time = positive_or(output, "every_time", 0);
   if (output.has("times")) {
     for (const json& time : output.array("times")) {
       if (!time.is_number()) output.wrong_type("times", "an array of numbers", time);
       plan.times.push_back(time);
     }
   }
-  if (plan.pvd.empty() && (output.has("every") || output.has("times"))) {
-    throw InputError(output.where() + ": every and times select snapshots; expected the key vtu, too");
+  if (plan.pvd.empty() && (output.has("every") || output.has("every_time") || output.has("times"))) {
+    throw InputError(output.where() +
+                     ": every, every_time and times select snapshots; expected the key vtu, too");
   }
   return plan;
 }
 
 }  // namespace
 
-EvolveConfig evolve_config(const json& description, const std::string& source) {
+EvolveConfig evolve_config(const json& given, const std::string& source) {
+  JsonReader(given, source)
+      .accept_only({"$schema", "flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start",
+                    "quadrature", "variant", "output", "problem", "parameters", "adaptive", "limits",
+                    "initial", "stop"});
+  std::optional<Initial> earlier = read_initial(given, source);
+  json description = given;
+  if (earlier) description.update(earlier->taken_over);
   const JsonReader reader(description, source);
   EvolveConfig config;
-  reader.accept_only({"$schema", "flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start",
-                      "quadrature", "variant", "output", "problem", "parameters", "adaptive", "limits"});
   const Entry& entry =
       entry_named(reader.text("flow"), reader.has("problem") ? reader.text("problem") : "", source);
   config.entry = &entry;
@@ -142,13 +177,15 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
     config.grid = time_grid(reader, entry);
   config.start_given = reader.has("start");
   if (reader.has("limits")) read_limits(JsonReader(reader.object("limits"), source + ": limits"), config);
+  if (reader.has("stop")) read_stop(JsonReader(reader.object("stop"), source + ": stop"), config);
   if (reader.has("output")) {
     const JsonReader output(reader.object("output"), source + ": output");
-    output.accept_only({"nodal", "series", "vtu", "every", "times", "checkpoint"});
+    output.accept_only({"nodal", "history", "series", "vtu", "every", "every_time", "times", "checkpoint"});
     config.nodal = file_name(output, "nodal");
     config.series = file_name(output, "series");
     config.checkpoint = file_name(output, "checkpoint");
     config.snapshots = snapshot_plan(output);
+    config.nodal_has_history = wants_history(output, config);
   }
   if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
   config.variant = settings(reader, "variant", entry.variant, entry);
@@ -156,12 +193,13 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   if (entry.check) entry.check(config, source);
   std::optional<int> degree;
   if (reader.has("degree")) degree = reader.integer_within("degree", 0, 1, max_degree);
-  const JsonReader mesh(reader.object("mesh"), source + ": mesh");
+  const std::string place = earlier ? "initial" : "mesh";
+  const JsonReader mesh(reader.object(place), source + ": " + place);
   if (mesh.has("file") && is_snapshot_of(mesh.text("file"), config.snapshots.pvd))
     throw InputError(
         source + ": output: found vtu = \"" + config.snapshots.pvd +
         "\", but the mesh is one of its snapshots, which a new run removes; expected another name");
-  EvolveMesh initial = evolve_mesh(mesh, degree, config.surface);
+  EvolveMesh initial = earlier ? std::move(earlier->surface) : evolve_mesh(mesh, degree, config.surface);
   config.mesh = std::move(initial.start.mesh);
   config.mesh_remarks = std::move(initial.remarks);
   config.fields = std::move(initial.start.fields);
@@ -171,8 +209,10 @@ EvolveConfig evolve_config(const json& description, const std::string& source) {
   config.rule = reader.has("quadrature") ? quadrature(reader.object("quadrature"), source + ": quadrature")
                 : entry.lumps_linear_elements && k == 1 ? vertex_quadrature()
                                                         : default_quadrature(k);
+  if (earlier) take_initial(std::move(*earlier), config);
   move_near_origin(config);
   scale_defaults(reader, config);
+  if (earlier) require_start(config, source + ": initial");
   return config;
 }
 

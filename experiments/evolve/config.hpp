@@ -31,8 +31,14 @@ struct EvolveConfig {
   std::optional<AdaptiveSteps> adaptive;  ///< instead of `grid`, where the file asks for it
   Quadrature rule;
   Settings variant, parameters;
+  std::string initial_file, initial_flow;  ///< of "initial"; empty: the run starts from "mesh"
+  nlohmann::json history;  ///< of initial_file (history.hpp), from which the run goes on; null: none
+  struct {
+    std::optional<double> speed, seconds, area;  ///< see StopRule
+  } stop;
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
-  std::string checkpoint;           ///< a file from which a stopped run resumes; empty: not wanted
+  bool nodal_has_history = false;
+  std::string checkpoint;  ///< a file from which a stopped run resumes; empty: not wanted
   SnapshotPlan snapshots;
   struct {
     std::optional<double> curvature_size, radius_ratio, normal_length;  ///< instead of the defaults

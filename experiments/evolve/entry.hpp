@@ -40,6 +40,7 @@ struct Entry {
   bool can_shrink_to_nothing = false;
   bool is_mean_curvature_flow = false;  ///< for which the lifetime is bounded
   bool slides_nodes = false;            ///< in its first step
+  bool has_given_motion = false;        ///< of the surface, or none: u alone evolves
   bool records_kappa_energy = false;    ///< in the series
   bool lumps_linear_elements = false;   ///< takes the vertices as quadrature points by default
 

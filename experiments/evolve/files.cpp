@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "experiments/evolve/series_lines.hpp"
+#include "experiments/harness/progress.hpp"
 #include "experiments/harness/provenance.hpp"
 #include "solver/write_file.hpp"
 
@@ -42,33 +44,43 @@ json rows(const Matrix& field) {
   return list;
 }
 
-void write_series(const EvolveConfig& config, RunRecorder& recorder, const std::string& status,
-                  const json& config_json, const json& origin) {
-  json series = recorder.series();
+void write_series(const Run& run, const std::string& status, const json& config_json, const json& origin) {
+  const std::string& file = run.config.series;
+  if (is_csv(file)) return write_file(file, csv_lines(run.recorder.series()));
+  json series = run.recorder.series();
   series["status"] = status;
   series["config"] = config_json;
   series["provenance"] = origin;
-  write_file(config.series, series.dump(1) + "\n");
+  write_file(file, series.dump(1) + "\n");
 }
 
-void write_nodal(const EvolveConfig& config, const RunRecorder& recorder, const json& config_json,
-                 const json& origin) {
-  const RunRecorder::Surface& newest = recorder.newest();
+void write_nodal(const Run& run, const json& config_json, const json& origin) {
+  const EvolveConfig& config = run.config;
+  const RunRecorder::Surface& newest = run.recorder.newest();
   const Field x = newest.x.rowwise() + config.origin.transpose();
-  json nodal = {{"t", newest.t}, {"x", rows(x)}, {"config", config_json}, {"provenance", origin}};
+  json nodal = {{"flow", config.entry->flow},   {"t", newest.t},         {"x", rows(x)},
+                {"degree", config.mesh.degree}, {"config", config_json}, {"provenance", origin}};
+  if (!config.entry->problem.empty()) nodal["problem"] = config.entry->problem;
+  if (!run.outcome.history.is_null()) nodal["history"] = run.outcome.history;
   for (const NodalField& field : newest.fields) nodal[field.name] = rows(field.values);
   nodal["elements"] = rows(config.mesh.elements);
   if (!config.node_numbers.empty()) nodal["node_numbers"] = config.node_numbers;
   write_file(config.nodal, nodal.dump() + "\n");
 }
 
+bool has_checkpoint(const EvolveConfig& config) {
+  std::error_code ignored;
+  return !config.checkpoint.empty() && std::filesystem::exists(config.checkpoint, ignored);
+}
+
 }  // namespace
 
 void prepare_outputs(const EvolveConfig& config, const json& json, const std::string& source) {
   using Named = std::pair<std::string, std::string>;
-  const auto mesh = json.at("mesh").find("file");
   std::vector<Named> inputs = {{"the configuration", source}};
-  if (mesh != json.at("mesh").end()) inputs.emplace_back("the mesh", mesh->get<std::string>());
+  for (const auto& [key, what] : {Named("mesh", "the mesh"), Named("initial", "the initial state")})
+    if (json.contains(key) && json.at(key).contains("file"))
+      inputs.emplace_back(what, json.at(key).at("file").get<std::string>());
   const std::vector<Named> outputs = {{"nodal", config.nodal},
                                       {"series", config.series},
                                       {"checkpoint", config.checkpoint},
@@ -91,7 +103,7 @@ json run_identity(const EvolveConfig& config, const json& description) {
   json identity = description;
   // Keys whose values are compared after reading, or that change no number of a step.
   for (const char* key : {"$schema", "output", "tau", "steps", "bdf", "start", "adaptive", "mesh", "degree",
-                          "quadrature", "limits"})
+                          "quadrature", "limits", "initial", "stop"})
     identity.erase(key);
   identity["mesh"] = json::array(
       {checksum(bytes_of(config.mesh.elements) + bytes_of(config.mesh.nodes) + bytes_of(config.origin))});
@@ -102,9 +114,9 @@ json run_identity(const EvolveConfig& config, const json& description) {
   return identity;
 }
 
-std::vector<std::string> write_outputs(const EvolveConfig& config, RunRecorder& recorder,
-                                       const std::string& status, const json& config_json, const json& origin,
-                                       std::vector<std::string> failures) {
+std::vector<std::string> write_outputs(const Run& run, const std::string& status, const json& config_json,
+                                       const json& origin, std::vector<std::string> failures) {
+  const EvolveConfig& config = run.config;
   const auto attempt = [&](auto&& action) {
     try {
       action();
@@ -113,18 +125,45 @@ std::vector<std::string> write_outputs(const EvolveConfig& config, RunRecorder& 
         failures.push_back(error.what());
     }
   };
-  if (!config.series.empty()) attempt([&] { write_series(config, recorder, status, config_json, origin); });
-  if (!config.nodal.empty()) attempt([&] { write_nodal(config, recorder, config_json, origin); });
-  attempt([&] { recorder.finish(); });
+  if (!config.series.empty()) attempt([&] { write_series(run, status, config_json, origin); });
+  if (!config.nodal.empty()) attempt([&] { write_nodal(run, config_json, origin); });
+  attempt([&] { run.recorder.finish(); });
   return failures;
 }
 
-std::string joined(const std::vector<std::string>& failures, const EvolveConfig& config) {
+std::string summary(const Run& run, double seconds) {
+  const EvolveConfig& config = run.config;
+  const Series& series = run.recorder.series();
+  const auto change = [&](const char* name) {
+    return format("%s %.6g -> %.6g", name, series.at(name).front(), series.at(name).back());
+  };
+  std::string files;
+  const auto list = [&](const std::string& file, const std::string& more = "") {
+    if (!file.empty()) files += (files.empty() ? "" : ", ") + (file == "-" ? "standard output" : file) + more;
+  };
+  list(config.nodal);
+  list(config.series);
+  list(config.snapshots.pvd, format(" (%zu snapshots)", run.recorder.snapshots().size()));
+  if (has_checkpoint(config)) list(config.checkpoint);
+  const int steps = run.recorder.newest().step;
+  return format("%d step%s to t = %g in %s; ", steps, steps == 1 ? "" : "s", run.recorder.newest().t,
+                duration_text(seconds).c_str()) +
+         change("area") + ", " + change("volume") + (files.empty() ? "" : "; written: " + files);
+}
+
+std::string how_to_go_on(const Run& run, const std::vector<std::string>& failures) {
+  const EvolveConfig& config = run.config;
+  if (has_checkpoint(config)) return "the same command resumes from " + config.checkpoint;
+  if (!failures.empty()) return "";
+  if (config.nodal.empty() || config.nodal == "-")
+    return "a run whose output has a \"checkpoint\" can be resumed";
+  return "\"initial\": {\"file\": \"" + config.nodal + "\"} in the place of \"mesh\" goes on from there" +
+         (run.outcome.history.is_null() ? ", with new starting steps" : "");
+}
+
+std::string joined(const std::vector<std::string>& parts) {
   std::string text;
-  for (const std::string& failure : failures) text += (text.empty() ? "" : "; ") + failure;
-  std::error_code ignored;
-  if (!config.checkpoint.empty() && std::filesystem::exists(config.checkpoint, ignored))
-    text += "; the same command resumes from " + config.checkpoint;
+  for (const std::string& part : parts) text += (text.empty() || part.empty() ? "" : "; ") + part;
   return text;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "experiments/evolve/config.hpp"
+#include "experiments/evolve/run_flow.hpp"
 
 namespace esfem {
 
@@ -20,11 +20,17 @@ nlohmann::json run_identity(const EvolveConfig& config, const nlohmann::json& js
 
 /// Writes all requested outputs; one that cannot be written does not prevent the others. Returns `failures`
 /// with those that could not be written.
-std::vector<std::string> write_outputs(const EvolveConfig& config, RunRecorder& recorder,
-                                       const std::string& status, const nlohmann::json& config_json,
-                                       const nlohmann::json& origin, std::vector<std::string> failures = {});
+std::vector<std::string> write_outputs(const Run& run, const std::string& status,
+                                       const nlohmann::json& config_json, const nlohmann::json& origin,
+                                       std::vector<std::string> failures = {});
 
-/// The failures of write_outputs in one line, with advice.
-std::string joined(const std::vector<std::string>& failures, const EvolveConfig& config);
+/// How far the run has come, and which files have been written, in one line.
+std::string summary(const Run& run, double seconds);
+
+/// How a run goes on that has been stopped; "" when the files are not there for it.
+std::string how_to_go_on(const Run& run, const std::vector<std::string>& failures);
+
+/// In one line; those that are empty are left out.
+std::string joined(const std::vector<std::string>& parts);
 
 }  // namespace esfem

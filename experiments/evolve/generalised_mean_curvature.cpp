@@ -21,8 +21,15 @@ void run_generalised_mean_curvature(const Run& run) {
     exact = power_law_sphere(config.surface->parameters.at("radius"), law);
     exact_state = [&](double t) { return exact_generalised_mean_curvature_state(exact, x0, t); };
   }
-  const Field nu_H = curvature_at_start(config, run.space).u;
-  const State initial = generalised_mean_curvature_state(law, x0, nu_H.leftCols(3), nu_H.col(3));
+  const Field nu_V = start_values(config, {"nu", "V"});
+  State initial;
+  if (nu_V.size() > 0) {
+    const Field v = -(nu_V.leftCols(3).array().colwise() * nu_V.col(3).array()).matrix();
+    initial = {0, x0, v, nu_V};
+  } else {
+    const Field nu_H = curvature_at_start(config, run.space).u;
+    initial = generalised_mean_curvature_state(law, x0, nu_H.leftCols(3), nu_H.col(3));
+  }
   const auto velocity = config.variant.is("velocity", "ritz") ? Variant::ritz : Variant::interpolation;
   run_flow(GeneralisedMeanCurvatureFlow(run.space, law, velocity, limits_of(run)), run, initial, exact_state);
 }
@@ -43,7 +50,7 @@ std::vector<Entry> generalised_mean_curvature_entries() {
   entry.check = [](const EvolveConfig& config, const std::string&) {
     PowerLaw(config.parameters.number("power"));
   };
-  entry.starts = {{"nu", "H"}};
+  entry.starts = {{"nu", "H"}, {"nu", "V"}};
   entry.can_shrink_to_nothing = true;
   entry.cure = smaller_steps_or_even_elements;
   return {entry};

@@ -75,12 +75,20 @@ std::string evolve_config_help() {
                                               {"feature_angle": 40}, in degrees: sharper edges stay sharp
          | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
+   "initial": {"file": "end.json",            instead of mesh: surface, nodal values and time of an earlier run, from its nodal
+                                              output, from a snapshot (.vtu), or from a mesh file with nodal values; see below
+               "time": 0},                    only for files that do not say it
    "degree": 2,                               1..4; default for a file without "surface": the degree of its elements, which is
                                               1 for flat triangles without "curve": on these nu and H do not converge with
                                               higher degrees
    "bdf": 3,                                  1..5; bgn: 1; default for dziuk without "surface": 1
    "tau": 0.05,                               step size (no default)
-   "steps": 0,                                end time = steps tau; 0 writes the initial surface
+   "steps": 0,                                end time = steps tau (from "initial": its time + steps tau); 0 writes the initial
+                                              surface
+   "stop": {"speed": 1e-6,                    ends the run: stationary, the largest |v| in the nodes is below this (length/time
+                                              of your data; cahn_hilliard: |du/dt|),
+            "area": 0.1,                      area below 0.1 times that at the start; values above 1: area above,
+            "seconds": 3600},                 wall-clock time of this command; default: none of these
    "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
                 "tolerance": 1e-3,            follow the solution; root mean square of x/L (dziuk, bgn), nu and L H
                                               (mean_curvature, willmore, surface_diffusion) or u (coupled_diffusion,
@@ -92,10 +100,14 @@ std::string evolve_config_help() {
    "limits": {"curvature_size": 5,            singular: |H| times edge length above this (or 4 times its initial maximum);
               "radius_ratio": 0.01,           radius ratio of an element below this (or the square of the initial minimum; no
               "normal_length": 4},            limit if that minimum is < 0.01); |nu| or 1/|nu| of a flow's nu above this
-   "output": {"nodal": "end.json", "series": "series.json",  default: nodal values on standard output
+   "output": {"nodal": "end.json",            default: nodal values on standard output
+              "history": true,                nodal has the steps before, so that "initial" goes on bit for bit; default: true
+                                              with tau and a file
+              "series": "series.json",        written at the end; "series.csv": a line per step, written at once
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
               "checkpoint": "run.checkpoint", the same command resumes from it; see below
               "every": 10,                    at every 10th step (default 0: none of these)
+              "every_time": 0.1,              at the first step at or after each multiple of this; tau stays as it is
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
 Flows and the defaults of their keys; the first problem of a flow is its default:
 )" + flows +
@@ -109,8 +121,8 @@ Surfaces and their defaults:
          R"(Output: nodal has t, x, v and the nodal fields of the flow (see Flows) at the last step, one row per node; the nodes of the
 mesh file come first, in its order. elements has one row per element: its nodes, counted from 0 (corners, then the nodes of
 the edges 01, 12, 20, then inner ones). node_numbers are the numbers of the nodes in the file, if these are not 1, 2, ..
-A run starts from those nodal values of its mesh file ($NodeData of .msh, point data of .vtu) that are listed with its flow
-("starts from"), and reports this. t starts at 0, and defaults are relative to the length of this surface: to continue with
+A run starts from those nodal values of its mesh file ($NodeData of .msh, point data of .vtu, real properties of the vertices
+of .ply: H, or nu_x, nu_y, nu_z) that are listed with its flow ("starts from"), and reports this. t starts at 0, and defaults are relative to the length of this surface: to continue with
 the parameters of an earlier run, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H,
 h, worst_angle (degrees), worst_radius_ratio; if the flow has nu, also min_nu and max_nu; for willmore and surface_diffusion
 kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
@@ -126,6 +138,13 @@ longer agree with the surface, for example because the mesh does not resolve the
 off edges. nu and H are compared with the surface at the start, at the end and every 50 steps; they do not agree if H nu and
 kappa, smoothed over an edge length, differ by more than 25% in L2, or the rates of area int H nu . v and int kappa . v by
 more than 25% of ||H nu|| ||v||, or willmore_energy and kappa_energy by more than 25% (degree 1: 50%).
+Initial: nodal has also degree, flow, and history: the states of the last bdf steps, the nodes at the start, and what the flow
+keeps from step to step. A run from it with the same flow, surface, variant, parameters, quadrature, tau and bdf goes on bit for
+bit as if it had not ended ("surface" and "bdf" may be left out). Otherwise, and from other files, it starts from the nodal
+values listed with the flow ("starts from") with new starting steps, and says why; a file without them is an error, and limits
+and defaults are then relative to its surface.
+Stop: the run ends with exit code 0, and "status" is "stationary: ..", "area: .." or "seconds: ..". A run that resumes from its
+checkpoint takes a step before it is judged again.
 Before the first step, missing folders of output files are created and the files are opened for writing as a test.
 Checkpoint: the file is written every 30 seconds, when the run is stopped, and at its end, and is kept. A run that finds it
 resumes from it, bit for bit as if it had not been stopped; more steps or a later end_time thus prolong a finished run (with
@@ -134,7 +153,8 @@ there on, and a vtu of another name begins there. A file that does not fit (anot
 program) or is damaged is an error before the first step, and is left unchanged. The checkpoint from which a run has resumed
 is kept as run.checkpoint.previous.
 SIGINT and SIGTERM stop a run after the step in progress: it writes its checkpoint and what it has computed, with "status":
-"stopped by signal SIGINT at t = ..", and ends with exit code 2, since it is not done. A second signal ends it at once.)";
+"stopped by signal SIGINT at t = ..", says how to go on, and ends with exit code 130 or 143. A second signal ends it at once.
+At its end a run says on standard error how many steps were taken, how long that took, and which files were written.)";
 }
 
 }  // namespace esfem

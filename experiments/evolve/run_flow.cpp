@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/evolve/run_flow.hpp"
 
-#include <unistd.h>
-
-#include <cstdio>
+#include <algorithm>
 
 #include "experiments/evolve/advice.hpp"
 #include "experiments/harness/stop_signal.hpp"
@@ -34,19 +32,19 @@ RegularityLimits limits_of(const Run& run, double size_of_u) {
 }
 
 void compare_curvature(const Run& run) {
-  if (!run.remark.empty() || !run.config.entry->evolves_curvature) return;
+  if (!run.outcome.remark.empty() || !run.config.entry->evolves_curvature) return;
   const auto found = run.recorder.compare_curvature();
   if (!found || !have_parted(run.config, *found)) return;
-  run.remark = curvature_remark(*found, run.recorder.newest().t);
-  warn(run.remark + "; " + run.config.entry->curvature_cure);
+  run.outcome.remark = curvature_remark(*found, run.recorder.newest().t);
+  warn(run.outcome.remark + "; " + run.config.entry->curvature_cure);
 }
 
 namespace {
 
 void look_at_first_step(const Run& run) {
   if (!run.config.entry->slides_nodes) return;
-  run.remark = sliding_remark(run.recorder.series());
-  warn(run.remark);
+  run.outcome.remark = sliding_remark(run.recorder.series());
+  warn(run.outcome.remark);
 }
 
 void require_area(const Run& run) {
@@ -60,22 +58,29 @@ void require_area(const Run& run) {
   if (end) throw ExtinctionError(extinction(*end, series));
 }
 
-double end_time(const EvolveConfig& config) {
-  return config.adaptive ? config.adaptive->end_time : config.grid.steps * config.grid.tau;
-}
-
 }  // namespace
 
-bool look_at_step(const Run& run, int n, double t) {
-  const EvolveConfig& config = run.config;
-  if (n == 1) look_at_first_step(run);
-  if (n % steps_between_comparisons == 0) compare_curvature(run);
-  require_area(run);
-  if (!config.adaptive && n == config.grid.steps) run.recorder.finish();
-  static const bool terminal = isatty(STDERR_FILENO);
-  const double end = end_time(config);
-  if (terminal) std::fprintf(stderr, "\rstep %d, t = %g of %g%s", n, t, end, t >= end ? "\n" : "");
-  return stop_signal() == 0;
+Watch::Watch(const Run& run, double start, double end, double tau, int starting_steps, int substeps)
+    : run_(run),
+      stop_(run.config, run.space),
+      lines_(run.config.series),
+      progress_(start, end, tau, starting_steps, substeps) {}
+
+Watch::Watch(const Run& run, const UniformSteps& steps)
+    : Watch(run, steps.time(0), steps.time(steps.steps), steps.tau,
+            run.config.history.is_object() ? 0 : std::min(steps.order - 1, steps.steps),
+            steps.start.substeps_per_step) {}
+
+bool Watch::look_at_step(int n, double t) {
+  const EvolveConfig& config = run_.config;
+  if (is_csv(config.series)) lines_.append(run_.recorder.series());
+  progress_.show(format("step %d", n), t);
+  if (n == 1) look_at_first_step(run_);
+  if (n % steps_between_comparisons == 0) compare_curvature(run_);
+  require_area(run_);
+  if (!config.adaptive && n == config.grid.steps) run_.recorder.finish();
+  run_.outcome.ended = stop_.reason(run_.recorder, n);
+  return stop_signal() == 0 && run_.outcome.ended.empty();
 }
 
 UniformSteps steps_of(const Run& run, bool has_exact_solution) {

@@ -10,6 +10,10 @@
 
 #include "experiments/evolve/config.hpp"
 #include "experiments/evolve/entry.hpp"
+#include "experiments/evolve/history.hpp"
+#include "experiments/evolve/series_lines.hpp"
+#include "experiments/evolve/stop.hpp"
+#include "experiments/harness/progress.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
@@ -19,13 +23,20 @@
 
 namespace esfem {
 
+/// What a run says at its end beside its records.
+struct Outcome {
+  std::string remark;      ///< for the status: empty, or that nu and H deviate from the surface
+  std::string ended;       ///< why it ended before its last step, as "stop" asks; empty: it did not
+  nlohmann::json history;  ///< for the nodal output; null: none
+};
+
 /// A run: its configuration, and its records.
 struct Run {
   const EvolveConfig& config;
   const SurfaceSpace& space;
   RunRecorder& recorder;
   Checkpoint* checkpoint;
-  std::string& remark;  ///< for the status: empty, or that nu and H deviate from the surface
+  Outcome& outcome;
 };
 
 /// The exact solution under mean curvature flow of the surfaces that have one.
@@ -37,9 +48,28 @@ RegularityLimits limits_of(const Run& run, double size_of_u = 0);
 /// Warns once that nu and H of the flow are no longer those of the surface.
 void compare_curvature(const Run& run);
 
-/// Checks after step n, when it is recorded. Returns whether the run continues, that is, no signal has
-/// arrived. Throws ExtinctionError if a shrinking surface will have no area left for the next step.
-bool look_at_step(const Run& run, int n, double t);
+/// What looks at each step of a run, shows how far it has come, and writes the series as CSV.
+class Watch {
+ public:
+  Watch(const Run& run, double start, double end) : Watch(run, start, end, 0, 0, 1) {}
+  explicit Watch(const Run& run, const UniformSteps& steps);
+
+  /// Before a step is recorded.
+  void look_before() { stop_.look_before(run_.recorder); }
+  /// When step n is recorded. Returns whether the run continues: no signal has arrived, and "stop" does not
+  /// ask for the end. Throws ExtinctionError if a shrinking surface will have no area left for the next step.
+  bool look_at_step(int n, double t);
+  /// After a substep of the starting steps.
+  void look_at_substep(double t) { progress_.show("starting steps", t); }
+
+ private:
+  Watch(const Run& run, double start, double end, double tau, int starting_steps, int substeps);
+
+  const Run& run_;
+  StopRule stop_;
+  SeriesLines lines_;
+  RunProgress progress_;
+};
 
 /// Equal steps as asked for; the start, where none is asked for, depends on whether a solution is known.
 UniformSteps steps_of(const Run& run, bool has_exact_solution);
@@ -64,24 +94,46 @@ template <class State>
 void record_more(const Run&, const State&) {}
 void record_more(const Run& run, const CahnHilliardState& state);
 
-/// Integrates from the start and records every step.
+/// Integrates from the start, or from where the history of an earlier run ends, and records every step.
 template <class Flow>
 void run_flow(Flow&& flow, const Run& run, const typename std::decay_t<Flow>::State& initial,
               const std::function<typename std::decay_t<Flow>::State(double t)>& exact = {}) {
   using State = typename std::decay_t<Flow>::State;
-  const auto observe = [&](int n, const State& state) {
-    run.recorder.record(n, state);
-    record_more(run, state);
-    return look_at_step(run, n, state.t);
+  const auto integrate_watched = [&](Watch& watch, const auto& steps, auto start, History<State>& past) {
+    start.after_substep = [&](double t) { watch.look_at_substep(t); };
+    integrate_keeping(past, flow, steps, start, run.checkpoint, [&](int n, const State& state) {
+      watch.look_before();
+      run.recorder.record(n, state);
+      record_more(run, state);
+      return watch.look_at_step(n, state.t);
+    });
   };
   if (run.config.adaptive) {
     AdaptiveSteps steps = *run.config.adaptive;
     steps.controlled = controlled<State>;
     steps.units = units_of_controlled<State>(run.space.length());
-    integrate(flow, steps, initial, run.checkpoint, observe);
-  } else {
-    integrate(flow, steps_of(run, exact != nullptr), {initial, exact}, run.checkpoint, observe);
+    Watch watch(run, steps.start_time, steps.end_time);
+    History<State> past(states_kept(steps));
+    integrate_watched(watch, steps, StartingValues<State>(initial), past);
+    return;
   }
+  const UniformSteps steps = steps_of(run, exact != nullptr);
+  StartingValues<State> start(initial, exact);
+  if (run.config.history.is_object()) start_from_history(run.config, initial, flow, start);
+  Watch watch(run, steps);
+  History<State> past(states_kept(steps));
+  const auto keep_history = [&] {
+    if (!run.config.nodal_has_history || run.recorder.empty()) return;
+    const RunRecorder::Surface& newest = run.recorder.newest();
+    run.outcome.history = history_of(run.config, steps, newest.step, newest.t, flow, past);
+  };
+  try {
+    integrate_watched(watch, steps, start, past);
+  } catch (const std::exception&) {
+    keep_history();
+    throw;
+  }
+  keep_history();
 }
 
 }  // namespace esfem

@@ -87,12 +87,21 @@ json common_properties() {
                          {"tolerance", positive},
                          {"first_step", positive},
                          {"largest_step", positive}};
-  const json output = {{"nodal", described(text, "nodal values at the end, JSON")},
-                       {"series", described(text, "what is recorded of each step, JSON")},
-                       {"vtu", described(text, "snapshots for ParaView, .pvd")},
-                       {"checkpoint", described(text, "the same command resumes from it")},
-                       {"every", described(integer(0, 100000000), "snapshots at every n-th step")},
-                       {"times", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+  const json output = {
+      {"nodal", described(text, "nodal values at the end, JSON")},
+      {"series", described(text, "what is recorded of each step, JSON; .csv: as lines while it runs")},
+      {"history", described({{"type", "boolean"}}, "nodal values with those of the steps before")},
+      {"vtu", described(text, "snapshots for ParaView, .pvd")},
+      {"checkpoint", described(text, "the same command resumes from it")},
+      {"every", described(integer(0, 100000000), "snapshots at every n-th step")},
+      {"every_time", described(positive, "snapshots at multiples of this time")},
+      {"times", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+  const json initial = {
+      {"file", described(text, "nodal output of an earlier run, snapshot, or mesh with nodal values")},
+      {"time", described({{"type", "number"}}, "of a file that does not say it")}};
+  const json stop = {{"speed", described(positive, "stationary: largest |v| in the nodes below this")},
+                     {"area", described(positive, "area relative to that at the start")},
+                     {"seconds", described(positive, "of wall-clock time")}};
   const json limits = {{"curvature_size", positive},
                        {"radius_ratio", {{"type", "number"}, {"exclusiveMinimum", -1}}},
                        {"normal_length", {{"type", "number"}, {"exclusiveMinimum", 1}}}};
@@ -103,6 +112,8 @@ json common_properties() {
             {"properties", {{"name", text}}},
             {"required", {"name"}}}},
           {"mesh", object_of(mesh)},
+          {"initial", described(object_of(initial), "instead of mesh: goes on from an earlier run")},
+          {"stop", described(object_of(stop), "ends the run before its last step")},
           {"degree", described(integer(1, max_degree), "of the finite elements")},
           {"bdf", described(integer(1, max_bdf_order), "order of the backward difference formula")},
           {"tau", described(positive, "step size")},
@@ -131,7 +142,8 @@ json evolve_schema() {
   json schema = object_of(properties);
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "Configuration of evolve";
-  schema["required"] = {"flow", "mesh"};
+  schema["required"] = {"flow"};
+  schema["oneOf"] = {{{"required", {"mesh"}}}, {{"required", {"initial"}}}};
   schema["allOf"] = rules;
   return schema;
 }

@@ -21,7 +21,7 @@ json number(const JsonReader& reader, const Key& key) {
                           key.kind == Key::positive ? "a positive number" : "a number >= 0"));
 }
 
-json word(const JsonReader& reader, const Key& key) {
+json known_word(const JsonReader& reader, const Key& key) {
   const std::string value = reader.text(key.name);
   if (std::find(key.words.begin(), key.words.end(), value) != key.words.end()) return value;
   std::set<std::string> known(key.words.begin(), key.words.end());
@@ -37,10 +37,10 @@ json value_of(const JsonReader& reader, const Key& key) {
   case Key::seed:
     return reader.integer_within(key.name, 0, 0, 1000000);
   case Key::word:
-    return word(reader, key);
+    return known_word(reader, key);
   case Key::truth_or_word:
     if (const json value = reader.truth_or_text(key.name); value.is_boolean()) return value;
-    return word(reader, key);
+    return known_word(reader, key);
   default:
     return number(reader, key);
   }

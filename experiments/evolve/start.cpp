@@ -24,6 +24,11 @@ bool has_all(const EvolveConfig& config, const Names& names) {
                      [&](const std::string& name) { return find(config.fields, name); });
 }
 
+/// The key that names the file of the nodal values.
+const char* key_of(const EvolveConfig& config) {
+  return config.initial_file.empty() ? "mesh" : "initial";
+}
+
 /// The node under the number that the mesh file has for it.
 std::string node_named(const EvolveConfig& config, int i) {
   if (i < int(config.node_numbers.size())) return format("node %ld", config.node_numbers[i]);
@@ -33,12 +38,12 @@ std::string node_named(const EvolveConfig& config, int i) {
 void check_values(const EvolveConfig& config, const std::string& name, const Field& values) {
   const bool is_vector = name == "nu" || name == "z" || name == "v";
   if (values.cols() != (is_vector ? 3 : 1))
-    throw InputError(format("mesh: %s of the file has %d components, %d expected", name.c_str(),
+    throw InputError(format("%s: %s of the file has %d components, %d expected", key_of(config), name.c_str(),
                             int(values.cols()), is_vector ? 3 : 1));
   for (int i = 0; i < values.rows(); ++i)
     if (!values.row(i).allFinite())
-      throw InputError("mesh: " + name + " of the file has no finite value at " + node_named(config, i) +
-                       ", one at each node expected");
+      throw InputError(std::string(key_of(config)) + ": " + name + " of the file has no finite value at " +
+                       node_named(config, i) + ", one at each node expected");
 }
 
 /// Normals of the file have about unit length and point outward, as those of the elements do.
@@ -46,8 +51,8 @@ void check_normals(const EvolveConfig& config, const Field& nu) {
   const Mesh& mesh = config.mesh;
   for (int i = 0; i < nu.rows(); ++i)
     if (const double length = nu.row(i).norm(); !(length > 0.5 && length < 2))
-      throw InputError(format("mesh: nu of the file has length %g at ", length) + node_named(config, i) +
-                       ", 1 expected");
+      throw InputError(format("%s: nu of the file has length %g at ", key_of(config), length) +
+                       node_named(config, i) + ", 1 expected");
   double along = 0, area = 0;
   for (const auto& element : mesh.elements.rowwise()) {
     const Vec3 a = mesh.nodes.row(element[0]), b = mesh.nodes.row(element[1]), c = mesh.nodes.row(element[2]);
@@ -57,9 +62,9 @@ void check_normals(const EvolveConfig& config, const Field& nu) {
   }
   if (!(along > 0.5 * area))
     throw InputError(
-        format("mesh: nu of the file is not the outward normal, the mean of nu . n over the "
+        format("%s: nu of the file is not the outward normal, the mean of nu . n over the "
                "surface is %.3g, about 1 expected",
-               along / area));
+               key_of(config), along / area));
 }
 
 }  // namespace
@@ -95,6 +100,28 @@ void require_unit_sphere(const EvolveConfig& config, const std::string& what) {
       what + " starts from the unit sphere; expected \"surface\": {\"name\": \"sphere\", \"radius\": 1}");
 }
 
+void require_start(const EvolveConfig& config, const std::string& where) {
+  if (config.history.is_object() || config.entry->starts.empty()) return;
+  std::string expected, found;
+  for (const Names& names : config.entry->starts) {
+    if (has_all(config, names)) return;
+    expected += expected.empty() ? "" : " or ";
+    for (const std::string& name : names) expected += (&name == &names.front() ? "" : ", ") + name;
+  }
+  for (const NodalField& field : config.fields) found += (found.empty() ? "" : ", ") + field.name;
+  const std::string& flow = config.initial_flow;
+  throw InputError(
+      where + ": flow " + config.entry->flow + " starts from " + expected + "; found " +
+      (found.empty() ? "no nodal values" : found) + " in " + config.initial_file +
+      (flow.empty() || flow == config.entry->flow ? "" : ", which flow " + flow + " has written"));
+}
+
+std::string curvature_start_remark(const EvolveConfig& config) {
+  if (!config.entry->evolves_curvature || config.surface || config.history.is_object()) return "";
+  if (start_values(config, {"nu", "H"}).size() > 0) return "";
+  return "no exact surface is given: nu and H at the start are computed on the discrete surface";
+}
+
 std::string start_remark(const EvolveConfig& config) {
   std::map<std::string, bool> used;
   for (const NodalField& field : config.fields) used[field.name] = false;
@@ -106,8 +133,9 @@ std::string start_remark(const EvolveConfig& config) {
     std::string& list = is_used ? taken : ignored;
     list += (list.empty() ? "" : ", ") + name;
   }
-  if (!taken.empty()) taken += " from the mesh file";
-  if (!ignored.empty()) ignored += " of the mesh file not used";
+  const std::string file = config.initial_file.empty() ? "the mesh file" : config.initial_file;
+  if (!taken.empty()) taken += " from " + file;
+  if (!ignored.empty()) ignored += " of " + file + " not used";
   return taken + (taken.empty() || ignored.empty() ? "" : "; ") + ignored;
 }
 

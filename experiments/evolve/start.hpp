@@ -22,6 +22,13 @@ MeanCurvatureFlow::State curvature_at_start(const EvolveConfig& config, const Su
 /// Throws InputError, headed by `what`, unless the surface is the unit sphere.
 void require_unit_sphere(const EvolveConfig& config, const std::string& what);
 
+/// Throws InputError, headed by `where`, when the flow starts from nodal values that the file of "initial"
+/// does not have.
+void require_start(const EvolveConfig& config, const std::string& where);
+
+/// That a flow of nu and H computes them at the start from the discrete surface; "" when it does not.
+std::string curvature_start_remark(const EvolveConfig& config);
+
 /// Which nodal values of the mesh file the run starts from, and which it does not use; "" without any.
 std::string start_remark(const EvolveConfig& config);
 

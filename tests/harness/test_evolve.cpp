@@ -283,7 +283,8 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"flow", "cahn_hilliard"}, {"problem", "phase_separation"}, {"variant", {{"theta", true}}}},
        "has no variants"},
       {{{"flow", "cahn_hilliard"}, {"parameters", {{"mean", 0.1}}}}, "known are epsilon"},
-      {{{"output", {{"vtk", "a"}}}}, "known are checkpoint, every, nodal, series, times, vtu"},
+      {{{"output", {{"vtk", "a"}}}},
+       "known are checkpoint, every, every_time, history, nodal, series, times, vtu"},
   };
   for (const auto& [changes, expected] : bad) {
     EXPECT_EQ(run(config(changes)), exit_usage) << changes;
