@@ -246,8 +246,11 @@ for stem in $(2); do
   rm -f $$folder/.executable.new
   $(BIN)/$$stem --preset $(1) --list >$$folder/.list
   while read -r cell cost; do
-    if [ ! -f $$folder/$$cell.json ] || [ $$folder/.executable -nt $$folder/$$cell.json ]; then echo $$cost; fi
+    if [ ! -f $$folder/$$cell.json ] || [ $$folder/.executable -nt $$folder/$$cell.json ]; then echo $$cost; else echo; fi
   done <$$folder/.list
-done | awk '{ n += 1; s += $$1 } END { if (n) printf "== %d runs to do, about %.0f s on one core\n", n, s }'
+done | awk -v start=$$(date +%s) -v progress=results/$(1)/cells/.progress '
+  NF { n += 1; s += $$1 }
+  END { if (n) printf "== %d runs to do, %d are done; about %.0f s on one core\n", n, NR - n, s
+        printf "%d %d %d %g\n", start, NR - n, NR, s >progress }'
 $(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" PYTHON=$(PYTHON) $(3)
 endef

@@ -228,6 +228,7 @@ int main(int argc, char** argv) {
       {nlohmann::json::object(), "_over_larger_tau", {"pinch_time"}, 0, 4}};
   experiment.steps = [](const Choice&) { return time_steps; };
   experiment.cost = cost;
+  experiment.known_end = [](const Choice&) { return "the neck pinches"; };
   experiment.parameters = {{"end_time", time_steps.end_time}, {"largest_tau", time_steps.largest}};
   experiment.meshes = "generated, level 0: edge length (0.2^-2 + |A|²)^(-1/2), level 1: 0.0902";
   return run_experiment(experiment, argc, argv);

@@ -149,6 +149,10 @@ int main(int argc, char** argv) {
       {{{"projection", "projected"}}, "_over_projected", {"largest_deviation_of_radius", "willmore_excess"}}};
   experiment.steps = time_steps;
   experiment.cost = cost;
+  experiment.known_end = [](const Choice& choice) {
+    const bool grows = choice["flow"] == "willmore" && choice["projection"] == "none" && choice.level() == 0;
+    return grows ? "without projection |nu_h| - 1 grows like exp(8t)" : "";
+  };
   experiment.parameters = {{"end_time", 1}};
   experiment.meshes = "generated, edge length 0.55 2^(-level/2)";
   return run_experiment(experiment, argc, argv);

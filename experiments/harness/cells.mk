@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The cells, tables and figures of the experiments STEMS at one PRESET, drawn by PYTHON; the Makefile calls it from the
-# project's root when results/PRESET/cells/STEM/.list and .executable are there. Goals: tables, figures, all.
+# project's root when results/PRESET/cells/STEM/.list and .executable are there, and results/PRESET/cells/.progress of
+# cell_done. Goals: tables, figures, all.
 
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -34,7 +35,7 @@ define stem_rules
 $(call cells_of,$(1)): $(cells)/$(1)/%.json: $(cells)/$(1)/.executable
 	@start=$$$$(date +%s)
 	$$(LAUNCH) $(BIN)/$(1) --preset $(PRESET) --cell $$* --output $$@
-	echo "$(1) $$*: $$$$(( $$$$(date +%s) - start )) s"
+	experiments/harness/cell_done $(cells)/.progress $(1) $$* $$$$(( $$$$(date +%s) - start ))
 
 results/$(PRESET)/$(1).json results/$(PRESET)/$(1).csv results/$(PRESET)/$(1).tex &: $(call cells_of,$(1))
 	@$(BIN)/$(1) --preset $(PRESET) --collect $(cells)/$(1) --output results/$(PRESET)/$(1).json

@@ -28,6 +28,8 @@ struct Experiment {
   /// (snapshots, checkpoint_file) go into `folder`, which may not exist yet; "": none are wanted. It is
   /// cells/STEM/CELL beside the table.
   Run run;
+  /// Why a run is known to end before its last step: its message says so. "": it is not.
+  std::function<std::string(const Choice&)> known_end = [](const Choice&) { return ""; };
   nlohmann::json parameters = nlohmann::json::object();  ///< what a table says beside the choices
   std::string meshes = "";                               ///< how meshes are generated, for the same
   RowRange fit_range = {};

@@ -185,8 +185,10 @@ Row run_cell(const Experiment& experiment, const Cell& cell, const std::string& 
   }
   row.seconds += clock.elapsed_seconds();
   row.peak_memory_mb = peak_memory_mb();
-  if (row.status != "ok")
-    std::cerr << program_invocation_short_name << ": cell " << row.cell << ": " << row.status << std::endl;
+  if (row.status == "ok") return row;
+  const std::string why = experiment.known_end(cell.choice);
+  std::cerr << program_invocation_short_name << ": cell " << row.cell << ": " << row.status
+            << (why.empty() ? "" : "; as expected: " + why) << std::endl;
   return row;
 }
 

@@ -177,6 +177,14 @@ TEST_F(RunExperiment, AFailedCellIsARowWithItsStatus) {
   EXPECT_TRUE(row.errors.empty());
 }
 
+TEST_F(RunExperiment, AnEndThatIsKnownIsMarkedAsExpected) {
+  const Outcome outcome = run("--cell h0_tau0 --output cell.json", "FAILING_CELL=h0_tau0");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err,
+              testing::EndsWith("element 7 is degenerate; as expected: level 0 is too coarse\n"));
+  EXPECT_EQ(table("cell.json").rows.at(0).status, "failed: step 3, t = 0.3: element 7 is degenerate");
+}
+
 TEST_F(RunExperiment, AFailureThatIsNotTheMethodsLeavesNoRow) {
   const Outcome outcome = run("--cell h1_tau0 --output cell.json", "MEMORY_CELL=h1_tau0");
   EXPECT_EQ(outcome.exit_code, 2);

@@ -84,5 +84,8 @@ int main(int argc, char** argv) {
   experiment.cost = [](const Choice& choice) {
     return std::pow(4.0, choice.level()) * time_steps.count(choice.step());
   };
+  experiment.known_end = [](const Choice& choice) {
+    return choice.level() == 0 ? "level 0 is too coarse" : "";
+  };
   return run_experiment(experiment, argc, argv);
 }
