@@ -101,7 +101,9 @@ int evolve(const std::string& file, const json& origin) {
   const auto write = [&](const std::string& status) {
     failures = write_outputs(asked, status, config_json, origin, failures);
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin;
-    if (failures.empty()) warn(joined({outcome.ended, summary(asked, elapsed.count())}));
+    if (!failures.empty()) return;
+    const std::string more = outcome.is_unfinished ? how_to_go_on(asked, failures) : "";
+    warn(joined({outcome.ended, more, summary(asked, elapsed.count())}));
   };
   note_stop_signals();
   try {

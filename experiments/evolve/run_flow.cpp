@@ -73,13 +73,18 @@ Watch::Watch(const Run& run, const UniformSteps& steps)
 
 bool Watch::look_at_step(int n, double t) {
   const EvolveConfig& config = run_.config;
+  const bool is_last = config.adaptive ? t >= config.adaptive->end_time : n == config.grid.steps;
   if (is_csv(config.series)) lines_.append(run_.recorder.series());
   progress_.show(format("step %d", n), t);
   if (n == 1) look_at_first_step(run_);
   if (n % steps_between_comparisons == 0) compare_curvature(run_);
-  require_area(run_);
-  if (!config.adaptive && n == config.grid.steps) run_.recorder.finish();
   run_.outcome.ended = stop_.reason(run_.recorder, n);
+  if (run_.outcome.ended.empty()) require_area(run_);
+  if (is_last && !config.adaptive) run_.recorder.finish();
+  if (run_.outcome.ended.empty() && n > 0 && !is_last && stop_.is_time_over()) {
+    run_.outcome.is_unfinished = true;
+    run_.outcome.ended = format("seconds: %g are over at t = %g (step %d)", *config.stop.seconds, t, n);
+  }
   return stop_signal() == 0 && run_.outcome.ended.empty();
 }
 

@@ -36,10 +36,12 @@ std::string StopRule::reason(const RunRecorder& recorder, int n) const {
     if (*stop.area < 1 ? ratio <= *stop.area : ratio >= *stop.area)
       return format("area: %.6g times that at the start, %g asked for, ", ratio, *stop.area) + at;
   }
-  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started_;
-  if (stop.seconds && elapsed.count() >= *stop.seconds)
-    return format("seconds: %.1f have passed, %g asked for, ", elapsed.count(), *stop.seconds) + at;
   return "";
+}
+
+bool StopRule::is_time_over() const {
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started_;
+  return config_.stop.seconds && elapsed.count() >= *config_.stop.seconds;
 }
 
 }  // namespace esfem

@@ -16,8 +16,9 @@ class StopRule {
 
   /// Before a step is recorded: keeps what the rate of change of u needs.
   void look_before(const RunRecorder& recorder);
-  /// Why the run ends with its newest step n; "" when it goes on, and at n = 0.
+  /// Why the run has come to its end with its newest step n; "" when it goes on, and at n = 0.
   std::string reason(const RunRecorder& recorder, int n) const;
+  bool is_time_over() const;
 
  private:
   double speed(const RunRecorder::Surface& surface) const;

@@ -65,7 +65,9 @@ TEST_F(EvolveInitial, InTheMiddleOfARunGivesTheSameBits) {
     whole["steps"] = 7;
     ASSERT_EQ(run(whole), exit_done) << changes << message;
     std::filesystem::rename(nodal, path("middle.json"));
-    ASSERT_EQ(run(from(whole, path("middle.json"), 5)), exit_done) << changes << message;
+    json rest = from(whole, path("middle.json"), 5);
+    rest.erase("bdf");
+    ASSERT_EQ(run(rest), exit_done) << changes << message;
     EXPECT_THAT(message, HasSubstr("the run goes on from step 7"));
     EXPECT_TRUE(values_at_end() == expected) << changes;
   }

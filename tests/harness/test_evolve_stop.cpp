@@ -95,6 +95,11 @@ TEST_F(EvolveStop, WhenTheAreaHasFallenOrGrown) {
   EXPECT_LE(area.back() / area.front(), 0.75);
   EXPECT_GT(area[area.size() - 2] / area.front(), 0.75);
   EXPECT_NEAR(t.back(), 0.065, 0.006);
+  // Not extinct within the next step: the area asked for comes first.
+  ASSERT_EQ(run(config({{"steps", 100}, {"tau", 0.1}, {"start", "cascade"}, {"stop", {{"area", 0.3}}}})),
+            exit_done)
+      << message;
+  EXPECT_THAT(status(), StartsWith("area: "));
   json growing = config({{"flow", "coupled_diffusion"}, {"steps", 100}, {"stop", {{"area", 1.1}}}});
   ASSERT_EQ(run(growing), exit_done) << message;
   EXPECT_THAT(status(), StartsWith("area: 1.1"));
@@ -111,7 +116,9 @@ TEST_F(EvolveStop, WhenTheAreaHasFallenOrGrown) {
 TEST_F(EvolveStop, WhenTheTimeIsOverAndItGoesOn) {
   json endless = config({{"tau", 1e-7}, {"steps", 100000000}, {"stop", {{"seconds", 0.3}}}});
   ASSERT_EQ(run(endless), exit_done) << message;
-  EXPECT_THAT(status(), StartsWith("seconds: "));
+  EXPECT_THAT(status(), StartsWith("seconds: 0.3 are over at t = "));
+  EXPECT_THAT(message,
+              HasSubstr("\"initial\": {\"file\": \"" + nodal + "\"} in the place of \"mesh\" goes on"));
   EXPECT_GT(column("t").size(), 1u);
 }
 
