@@ -40,13 +40,27 @@ nlohmann::json history_of(const EvolveConfig& config, const UniformSteps& steps,
           {"flow", std::move(flow_keeps)}};
 }
 
+/// Runs `body`, which reads a history; what is wrong in it is an InputError that names the file.
+template <class Body>
+void in_history_of(const std::string& file, Body&& body) {
+  std::string wrong;
+  try {
+    return body();
+  } catch (const nlohmann::json::exception& error) {
+    wrong = error.what();
+  } catch (const InputError& error) {
+    wrong = error.what();
+  }
+  throw InputError(file + ": history: " + wrong);
+}
+
 /// What a run starts from that goes on from the configuration's history; `like`: a state of the same sizes.
 /// Throws InputError when the states do not have these.
 template <class Flow>
 void start_from_history(const EvolveConfig& config, const typename Flow::State& like, Flow& flow,
                         StartingValues<typename Flow::State>& start) {
   using State = typename Flow::State;
-  try {
+  in_history_of(config.initial_file, [&] {
     std::vector<State> states;
     for (const nlohmann::json& state : config.history.at("states"))
       states.push_back(unpacked_state(in_bytes(state), like));
@@ -58,11 +72,7 @@ void start_from_history(const EvolveConfig& config, const typename Flow::State& 
     if constexpr (KeepsProgress<Flow>::value) flow.resume(in_bytes(config.history.at("flow")));
     start.initial = states.front();
     start.before.assign(states.begin() + 1, states.end());
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(config.initial_file + ": history: " + error.what());
-  } catch (const InputError& error) {
-    throw InputError(config.initial_file + ": history: " + error.what());
-  }
+  });
 }
 
 }  // namespace esfem

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/evolve/initial.hpp"
 
+#include <filesystem>
 #include <set>
 
 #include "experiments/evolve/config.hpp"
@@ -85,20 +86,16 @@ std::string difference(const json& description, const JsonReader& whole, const J
 
 void take_history(const JsonReader& whole, const JsonReader& file, Initial& initial) {
   Field& x = initial.surface.start.mesh.nodes;
-  try {
+  in_history_of(initial.file, [&] {
     const Field start = field_in_numbers(initial.history.at("start"));
     if (start.rows() != x.rows() || start.cols() != 3) throw InputError("start: expected a row per node");
-    initial.history.at("origin").at(2).get<double>();
+    for (int l = 0; l < 3; ++l) initial.history.at("origin").at(l).get<double>();
     x = start;
     initial.surface.start.fields.clear();
     initial.surface.remarks.push_back(
         format("%s: the run goes on from step %d, t = %g, with the states before", initial.file.c_str(),
                initial.history.at("step").get<int>(), initial.t.value()));
-  } catch (const json::exception& error) {
-    throw InputError(initial.file + ": history: " + error.what());
-  } catch (const InputError& error) {
-    throw InputError(initial.file + ": history: " + error.what());
-  }
+  });
   const json earlier = file.has("config") ? file.object("config") : json::object();
   if (!whole.has("surface") && earlier.contains("surface"))
     initial.taken_over["surface"] = earlier.at("surface");
@@ -150,11 +147,6 @@ Initial from_mesh_file(const JsonReader& whole, const std::string& name) {
   return initial;
 }
 
-bool is_json(const std::string& file) {
-  const std::string end = ".json";
-  return file.size() > end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
-}
-
 }  // namespace
 
 std::optional<Initial> read_initial(const json& description, const std::string& source) {
@@ -164,7 +156,8 @@ std::optional<Initial> read_initial(const json& description, const std::string& 
   const JsonReader asked(whole.object("initial"), whole.where() + ": initial");
   asked.accept_only({"file", "time"});
   const std::string file = asked.text("file");
-  Initial initial = is_json(file) ? from_nodal_output(description, whole, file) : from_mesh_file(whole, file);
+  const bool is_json = std::filesystem::path(file).extension() == ".json";
+  Initial initial = is_json ? from_nodal_output(description, whole, file) : from_mesh_file(whole, file);
   const int degree = initial.surface.start.mesh.degree;
   if (whole.has("degree") && whole.integer("degree") != degree)
     throw InputError(

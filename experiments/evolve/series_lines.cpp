@@ -3,6 +3,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <vector>
 
 #include "solver/error.hpp"
@@ -10,8 +11,7 @@
 namespace esfem {
 
 bool is_csv(const std::string& file) {
-  const std::string end = ".csv";
-  return file.size() > end.size() && file.compare(file.size() - end.size(), end.size(), end) == 0;
+  return std::filesystem::path(file).extension() == ".csv";
 }
 
 std::string csv_lines(const Series& series, std::size_t first) {

@@ -2,7 +2,9 @@
 #include "experiments/harness/stop_signal.hpp"
 
 #include <signal.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <initializer_list>
 
 namespace esfem {
@@ -15,6 +17,9 @@ extern "C" void note_signal(int number) {
   noted = number;
   signal(SIGINT, SIG_DFL);
   signal(SIGTERM, SIG_DFL);
+  constexpr char text[] = "stopping after the step in progress; a second signal ends the run at once\n";
+  const int before = errno;
+  if (write(STDERR_FILENO, text, sizeof text - 1) < 0) errno = before;  // nobody reads it
 }
 
 }  // namespace

@@ -3,8 +3,8 @@
 
 namespace esfem {
 
-/// From now on the first SIGINT or SIGTERM is only noted; the next one ends the process at once. Signals that
-/// are ignored stay so.
+/// From now on the first SIGINT or SIGTERM is only noted, which standard error says; the next one ends the
+/// process at once. Signals that are ignored stay so.
 void note_stop_signals();
 
 /// The signal that has been noted; 0: none.

@@ -259,7 +259,7 @@ TEST(StopSignalDeathTest, TheFirstIsNotedAndTheSecondEndsTheProcess) {
     raise(SIGTERM);
     _exit(stop_signal() == SIGTERM ? 42 : 0);
   };
-  EXPECT_EXIT(first(), testing::ExitedWithCode(42), "");
+  EXPECT_EXIT(first(), testing::ExitedWithCode(42), "a second signal ends the run at once");
   const auto second = [] {
     signal(SIGINT, SIG_DFL);
     note_stop_signals();
