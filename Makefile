@@ -48,7 +48,7 @@ help:
 	@echo "make STEM          one experiment as published, with its figures; STEM is one of"
 	@echo "                   $(or $(stems),(none yet))"
 	@echo "make evolve        only the program for your own surface, mesh and flow -> $(BIN)/evolve"
-	@echo "make sanitize      tests of all parts below the flows under AddressSanitizer and UBSan, in build-asan/"
+	@echo "make sanitize      tests of fe, mesh, assembly, linalg, time and tables under AddressSanitizer and UBSan"
 	@echo "make crash         kills runs at KILLS=200 random moments, fills disks, damages checkpoints; then compares the numbers"
 	@echo "make fuzz          mutated files for each reader, SECONDS=60 of each, in build-fuzz/ (needs clang)"
 	@echo "make bench         ms per step and phase at growing sizes, factorisations compared with CHOLMOD and MUMPS"
@@ -145,11 +145,11 @@ test-vtu:
 test-norms:
 	@$(PYTHON) tests/analysis/test_norms.py -q
 
-# Sanitizers for the tests of all parts below the flows; flows and the finest meshes take too long.
+# Sanitizers for the tests of fe, mesh, assembly, linalg, time and tables; flows and the finest meshes take too long.
 sanitize:
 	@export BUILD=build-asan PRESET=asan
 	$(call prepare,build,build tests peers,sanitized)
-	$(call run_tests,$$BUILD,-L '^(fe|mesh|assembly|linalg|time|analysis|tables)$$' \
+	$(call run_tests,$$BUILD,-L '^(fe|mesh|assembly|linalg|time|tables)$$' \
 	  -E 'GeneratedMesh.KeepsItsPromises.*_(50|100) |FollowsASizeFunction|ResolvesADeeplyPerturbedTorus|IsTheSameToTheBitAfterOtherCalls')
 
 # Runs that are killed at random moments, full disks, damaged checkpoints; a part of it as a check.
