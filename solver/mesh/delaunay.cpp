@@ -45,17 +45,17 @@ class Numbered : public Base {
   std::size_t number_ = std::size_t(-1);
 };
 
-using Triangulation = CGAL::Delaunay_triangulation_3<
+using SpatialTriangulation = CGAL::Delaunay_triangulation_3<
     Kernel, CGAL::Triangulation_data_structure_3<Numbered<CGAL::Surface_mesh_vertex_base_3<Kernel>>,
                                                  Numbered<CGAL::Surface_mesh_cell_base_3<Kernel>>>>;
-using Complex = CGAL::Complex_2_in_triangulation_3<Triangulation>;
+using Complex = CGAL::Complex_2_in_triangulation_3<SpatialTriangulation>;
 
 /// A facet is refined while the radius of its surface Delaunay ball exceeds radius_factor times the size
 /// there, the largest excess first.
 class SizeCriterion {
  public:
   using Quality = double;
-  using Facet = Triangulation::Facet;
+  using Facet = SpatialTriangulation::Facet;
   explicit SizeCriterion(const SizeFunction& size) : size_(size) {}
   bool is_bad(const Facet& facet, Quality& quality) const {
     const Point& center = facet.first->get_facet_surface_center(facet.second);
@@ -105,7 +105,7 @@ Mesh delaunay_surface_mesh(const Surface& surface, const SizeFunction& size) {
       1.5 * surface.bounding_radius;  // rays are clipped to this ball: the surface lies well inside
   const auto level = [&surface](const Point& p) { return surface.level(to_vector(p)); };
   using Implicit = CGAL::Implicit_surface_3<Kernel, decltype(level)>;
-  Triangulation triangulation;
+  SpatialTriangulation triangulation;
   Complex complex(triangulation);
   // The bisection along a ray stops at 1e-4 of the radius: the exact projection follows.
   CGAL::make_surface_mesh(complex, Implicit(level, Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), 1e-4),

@@ -19,7 +19,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
 using FaceBase = CGAL::Constrained_triangulation_face_base_2<Kernel>;
 using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
-using Triangulation =
+using PlaneTriangulation =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::No_constraint_intersection_tag>;
 
 using Corners = std::vector<int>;
@@ -59,11 +59,11 @@ void cut_quadrangle(const std::vector<Vec3>& x, const Corners& q, Triangles& tri
 }
 
 /// The faces that are reached from outside without crossing the polygon.
-std::set<Triangulation::Face_handle> outside(const Triangulation& triangulation) {
-  std::set<Triangulation::Face_handle> reached{triangulation.infinite_face()};
-  std::vector<Triangulation::Face_handle> todo{triangulation.infinite_face()};
+std::set<PlaneTriangulation::Face_handle> outside(const PlaneTriangulation& triangulation) {
+  std::set<PlaneTriangulation::Face_handle> reached{triangulation.infinite_face()};
+  std::vector<PlaneTriangulation::Face_handle> todo{triangulation.infinite_face()};
   while (!todo.empty()) {
-    const Triangulation::Face_handle face = todo.back();
+    const PlaneTriangulation::Face_handle face = todo.back();
     todo.pop_back();
     for (int i = 0; i < 3; ++i)
       if (!face->is_constrained(i) && reached.insert(face->neighbor(i)).second)
@@ -76,8 +76,8 @@ void cut_polygon(const std::vector<Vec3>& x, const Corners& polygon, Triangles& 
   const Vec3 normal = doubled_area(x, polygon).normalized();
   if (!(normal.norm() > 0.5)) throw InputError("its polygon has no area, a simple polygon expected");
   const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
-  Triangulation triangulation;
-  std::vector<Triangulation::Vertex_handle> vertices;
+  PlaneTriangulation triangulation;
+  std::vector<PlaneTriangulation::Vertex_handle> vertices;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const Vec3 d = x[polygon[i]] - x[polygon[0]];
     vertices.push_back(triangulation.insert({d.dot(u), d.dot(v)}));
@@ -88,12 +88,12 @@ void cut_polygon(const std::vector<Vec3>& x, const Corners& polygon, Triangles& 
   try {
     for (std::size_t i = 0; i < polygon.size(); ++i)
       triangulation.insert_constraint(vertices[i], vertices[(i + 1) % polygon.size()]);
-  } catch (const Triangulation::Intersection_of_constraints_exception&) {
+  } catch (const PlaneTriangulation::Intersection_of_constraints_exception&) {
     throw InputError(not_simple);
   }
   const auto reached = outside(triangulation);
   const std::size_t before = triangles.size();
-  for (const Triangulation::Face_handle face : triangulation.finite_face_handles())
+  for (const PlaneTriangulation::Face_handle face : triangulation.finite_face_handles())
     if (!reached.count(face))
       triangles.push_back({polygon[face->vertex(0)->info()], polygon[face->vertex(1)->info()],
                            polygon[face->vertex(2)->info()]});
