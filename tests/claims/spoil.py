@@ -4,7 +4,7 @@
 
     tests/claims/spoil.py [--build DIR] [--known FILE] [FOLDER]     FOLDER has tables, default results/check
 
-A claim on an order has to fail when one order in its variable is taken away from all errors, one with an upper bound when
+A claim on an order has to fail, or no longer to be told, when one order or half an order in its variable is taken away from all errors, one with an upper bound when
 an order is added; one on a size or a value with an upper bound when the number is doubled, one with a lower bound when it is
 halved. Exempt are bounds at round-off, 1e-9 and less, and numbers that are zero: twice zero is zero, and what is at round-off
 jumps by more than a factor when it is wrong. The claims in FILE, "STEM ID: what it does not see" a line, are known not to
@@ -53,6 +53,7 @@ def times(factor):
 
 SPOILED = {f"an order in {variable} {word}": with_other_order(variable, change)
            for variable in ("h", "tau") for word, change in (("less", -1), ("more", 1))}
+SPOILED |= {f"half an order in {variable} less": with_other_order(variable, -0.5) for variable in ("h", "tau")}
 SPOILED |= {"twice as large": times(2), "half as large": times(0.5)}
 ROUND_OFF = 1e-9
 
@@ -62,8 +63,8 @@ def required(claim):
     least, most = claim.get("at_least", -math.inf), claim.get("at_most", math.inf)
     if claim["kind"] == "order":
         # An order of -8 at least is no bound: the claim is that nothing converges.
-        return [f"an order in {claim['variable']} {word}"
-                for word, bounded in (("less", least > -8), ("more", most < math.inf)) if bounded]
+        return [f"{what} in {claim['variable']} {word}" for what, word, bounded in
+                (("an order", "less", least > -8), ("half an order", "less", least > -8), ("an order", "more", most < math.inf)) if bounded]
     number = float(claim["measured"].split()[0])
     if number < 0:
         least, most = -most, -least
