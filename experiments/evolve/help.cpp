@@ -73,7 +73,8 @@ std::string evolve_config_help() {
                                               about this length; default: no. Edges sharper than feature_angle are kept
             "curve": true}                    puts nodes of degree 2 to 4 on a smooth surface through the corners; default: no.
                                               {"feature_angle": 40}, in degrees: sharper edges stay sharp
-         | {"edge_length": 0.25}              largest edge of a generated mesh, in the surface's units
+         | {"edge_length": 0.25,              largest edge of a generated mesh, in the surface's units
+            "grading": 0.5}                   edges at most this times the radius of curvature; default: edges of one length
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
    "initial": {"file": "end.json",            instead of mesh: surface, nodal values and time of an earlier run, from its nodal
                                               output, from a snapshot (.vtu), or from a mesh file with nodal values; see below

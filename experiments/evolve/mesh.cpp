@@ -23,6 +23,13 @@ Mesh subdivided(const Surface& surface, int subdivisions, const std::string& whe
                    "; expected edge_length or file");
 }
 
+/// With edges of one length, or graded by curvature.
+Mesh generated(const Surface& surface, const JsonReader& description) {
+  const double edge_length = description.number("edge_length");
+  return description.has("grading") ? generate_mesh(surface, edge_length, description.number("grading"))
+                                    : generate_mesh(surface, edge_length);
+}
+
 /// The mesh of this degree with the nodal values on it, and the file's numbers of its first nodes.
 void raise_degree(ReadMesh& start, int degree) {
   const Mesh given = std::move(start.mesh);
@@ -151,14 +158,17 @@ EvolveMesh evolve_mesh(const JsonReader& description, std::optional<int> degree,
     description.accept_only({"file", "curve", "remesh"});
     result = mesh_of_file(description, degree, surface.has_value());
   } else {
-    const std::string key = description.only_key({"file", "edge_length", "subdivisions"});
+    const bool is_graded = description.has("edge_length") && description.has("grading");
+    if (is_graded) description.accept_only({"edge_length", "grading"});
+    const std::string key =
+        is_graded ? "edge_length" : description.only_key({"file", "edge_length", "subdivisions"});
     if (!surface) {
       throw InputError(description.where() + ": " + key +
                        " needs a \"surface\"; expected one, or a mesh with the key file");
     }
     const Mesh mesh =
         key == "edge_length"
-            ? generate_mesh(*surface, description.number("edge_length"))
+            ? generated(*surface, description)
             : subdivided(*surface, description.integer_within("subdivisions", 0, 0, 8), description.where());
     result.start.mesh = lagrange_mesh(mesh, degree.value_or(2));
   }

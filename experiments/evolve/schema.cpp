@@ -75,6 +75,12 @@ json common_properties() {
   const auto integer = [](int low, int high) {
     return json{{"type", "integer"}, {"minimum", low}, {"maximum", high}};
   };
+  const json number = {{"type", "number"}};
+  const json numbers = {{"type", "object"}, {"additionalProperties", number}};
+  const auto list = [](const json& items, int count) {
+    return json{{"type", "array"}, {"items", items}, {"minItems", count}, {"maxItems", count}};
+  };
+  const json box = list(list(number, 3), 2);
   const json mesh = {
       {"file", described(text, "a mesh file")},
       {"remesh", described(positive, "replaces flat triangles by new ones with edges of about this length")},
@@ -82,6 +88,11 @@ json common_properties() {
        {{"description", "puts the nodes on a smooth surface through the corners"},
         {"anyOf", {{{"type", "boolean"}}, object_of({{"feature_angle", {{"type", "number"}}}})}}}},
       {"edge_length", described(positive, "largest edge of a generated mesh")},
+      {"grading",
+       {{"type", "number"},
+        {"exclusiveMinimum", 0},
+        {"maximum", 1},
+        {"description", "of a generated mesh: edges are at most this times the radius of curvature"}}},
       {"subdivisions", described(integer(0, 10), "of an icosahedron")}};
   const json adaptive = {{"end_time", {{"type", "number"}, {"minimum", 0}}},
                          {"tolerance", positive},
@@ -109,8 +120,12 @@ json common_properties() {
           {"surface",
            {{"type", "object"},
             {"description", "exact initial surface and its parameters"},
-            {"properties", {{"name", text}}},
-            {"required", {"name"}}}},
+            {"properties",
+             {{"name", text},
+              {"level_set", described(text, "instead of a name: a formula d(x, y, z), d < 0 inside")},
+              {"box", described(box, "two corners of a box around the surface")},
+              {"parameters", described(numbers, "numbers that the formula names")}}},
+            {"oneOf", {{{"required", {"name"}}}, {{"required", {"level_set", "box"}}}}}}},
           {"mesh", object_of(mesh)},
           {"initial", described(object_of(initial), "instead of mesh: goes on from an earlier run")},
           {"stop", described(object_of(stop), "ends the run before its last step")},

@@ -9,11 +9,13 @@
 #include <CGAL/Spatial_sort_traits_adapter_3.h>
 #include <CGAL/Surface_mesh_cell_base_3.h>
 #include <CGAL/Surface_mesh_vertex_base_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
 #include <CGAL/hilbert_sort.h>
 #include <CGAL/make_surface_mesh.h>
 #include <CGAL/property_map.h>
 
 #include <array>
+#include <memory>
 #include <numeric>
 #include <unordered_map>
 
@@ -103,14 +105,29 @@ Mesh delaunay_surface_mesh(const Surface& surface, const SizeFunction& size) {
   CGAL::get_default_random() = CGAL::Random(0);  // the mesher takes its first rays from it
   const double radius =
       1.5 * surface.bounding_radius;  // rays are clipped to this ball: the surface lies well inside
+  const Point centre(surface.centre[0], surface.centre[1], surface.centre[2]);
   const auto level = [&surface](const Point& p) { return surface.level(to_vector(p)); };
   using Implicit = CGAL::Implicit_surface_3<Kernel, decltype(level)>;
   SpatialTriangulation triangulation;
   Complex complex(triangulation);
   // The bisection along a ray stops at 1e-4 of the radius: the exact projection follows.
-  CGAL::make_surface_mesh(complex, Implicit(level, Kernel::Sphere_3(CGAL::ORIGIN, radius * radius), 1e-4),
+  CGAL::make_surface_mesh(complex, Implicit(level, Kernel::Sphere_3(centre, radius * radius), 1e-4),
                           SizeCriterion(size), CGAL::Manifold_tag());
   return extract(complex, surface);
+}
+
+std::function<int(const Vec3&)> closest_node(const Field& nodes) {
+  using Vertex = CGAL::Triangulation_vertex_base_with_info_3<int, Kernel>;
+  using Delaunay = CGAL::Delaunay_triangulation_3<
+      Kernel, CGAL::Triangulation_data_structure_3<Vertex, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>>;
+  const auto triangulation = std::make_shared<Delaunay>();
+  std::vector<std::pair<Point, int>> points;
+  for (Eigen::Index i = 0; i < nodes.rows(); ++i)
+    points.emplace_back(Point(nodes(i, 0), nodes(i, 1), nodes(i, 2)), int(i));
+  triangulation->insert(points.begin(), points.end());
+  return [triangulation](const Vec3& x) {
+    return triangulation->nearest_vertex(Point(x[0], x[1], x[2]))->info();
+  };
 }
 
 std::vector<std::size_t> hilbert_order(const Field& nodes) {

@@ -17,6 +17,9 @@ using SizeFunction = std::function<double(const Vec3&)>;
 /// is left to the caller. The same arguments give the same bits, in every process and after any calls.
 Mesh delaunay_surface_mesh(const Surface& surface, const SizeFunction& size);
 
+/// The number of the node that is closest to a point.
+std::function<int(const Vec3&)> closest_node(const Field& nodes);
+
 /// The nodes' numbers in the order of a Hilbert curve: neighbours in space become neighbours in memory.
 std::vector<std::size_t> hilbert_order(const Field& nodes);
 

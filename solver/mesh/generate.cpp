@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <utility>
 
 #include "solver/error.hpp"
 #include "solver/mesh/delaunay.hpp"
@@ -17,18 +20,11 @@ struct Promise {
   double deviation;  ///< of the largest edge, relative
 };
 
-/// max |kappa_i|, from kappa_1 + kappa_2 = tr A and kappa_1² + kappa_2² = |A|².
-double largest_curvature(const Surface& surface, const Vec3& y) {
-  const Mat3 A = surface.weingarten(y);
-  const double H = A.trace();
-  return (std::abs(H) + std::sqrt(std::max(2 * A.squaredNorm() - H * H, 0.0))) / 2;
-}
-
 void check_resolution(const Mesh& mesh, const Surface& surface, const SizeFunction& edge_length) {
   const double allowance = 1.01;  // the surface's own smallest radius may be rounded
   for (Eigen::Index i = 0; i < mesh.nodes.rows(); ++i) {
     const Vec3 y = mesh.nodes.row(i);
-    const double radius = 1 / largest_curvature(surface, y);
+    const double radius = 1 / surface.largest_curvature(y);
     if (edge_length(y) > allowance * radius)
       throw InputError(
           format("%s: edge length %g at (%g, %g, %g), expected at most %g, the radius of curvature",
@@ -113,6 +109,65 @@ Mesh generate(const Surface& surface, const SizeFunction& edge_length, const Pro
   return mesh;
 }
 
+/// `size` where it grows by at most `growth` times the distance on the surface: in the vertices of a mesh for
+/// `size` itself the least of size + growth * distance along its edges (Dijkstra), elsewhere the least of the
+/// same from the closest vertex and its neighbours.
+class GradualSize {
+ public:
+  GradualSize(const Surface& surface, SizeFunction size, double growth)
+      : size_(std::move(size)), growth_(growth) {
+    const Mesh mesh = delaunay_surface_mesh(surface, size_);
+    nodes_ = mesh.nodes;
+    closest_ = closest_node(nodes_);
+    neighbours_.resize(nodes_.rows());
+    for (Eigen::Index t = 0; t < mesh.elements.rows(); ++t)
+      for (int i = 0; i < 3; ++i) {
+        neighbours_[mesh.elements(t, i)].push_back(mesh.elements(t, (i + 1) % 3));
+        neighbours_[mesh.elements(t, i)].push_back(mesh.elements(t, (i + 2) % 3));
+      }
+    spread();
+  }
+
+  double operator()(const Vec3& y) const {
+    const int vertex = closest_(y);
+    double size = std::min(size_(y), size_from(vertex, y));
+    for (int neighbour : neighbours_[vertex]) size = std::min(size, size_from(neighbour, y));
+    return size;
+  }
+
+ private:
+  double size_from(int vertex, const Vec3& y) const {
+    return sizes_[vertex] + growth_ * (y - Vec3(nodes_.row(vertex))).norm();
+  }
+
+  void spread() {
+    using Entry = std::pair<double, int>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    for (int i = 0; i < nodes_.rows(); ++i) {
+      sizes_.push_back(size_(nodes_.row(i)));
+      queue.emplace(sizes_[i], i);
+    }
+    while (!queue.empty()) {
+      const auto [size, vertex] = queue.top();
+      queue.pop();
+      if (size > sizes_[vertex]) continue;
+      for (int neighbour : neighbours_[vertex]) {
+        const double limited = size_from(vertex, nodes_.row(neighbour));
+        if (limited >= sizes_[neighbour]) continue;
+        sizes_[neighbour] = limited;
+        queue.emplace(limited, neighbour);
+      }
+    }
+  }
+
+  SizeFunction size_;
+  double growth_;
+  Field nodes_;
+  std::function<int(const Vec3&)> closest_;
+  std::vector<std::vector<int>> neighbours_;
+  std::vector<double> sizes_;
+};
+
 void check_positive(double edge_length, const Surface& surface) {
   if (!(edge_length > 0) || !std::isfinite(edge_length))
     throw InputError(
@@ -125,8 +180,10 @@ Mesh generate_mesh(const Surface& surface, double edge_length) {
   check_positive(edge_length, surface);
   const double largest = surface.smallest_curvature_radius;
   if (edge_length > largest * (1 + 1e-12))
-    throw InputError(format("%s: edge length %g, expected at most %g, the smallest radius of curvature",
-                            surface.name.c_str(), edge_length, largest));
+    throw InputError(
+        format("%s: edge length %g, expected at most %g, the smallest radius of curvature, or a "
+               "mesh that is graded by curvature",
+               surface.name.c_str(), edge_length, largest));
   return generate(surface, [edge_length](const Vec3&) { return edge_length; }, {25, 0.94, 0.15});
 }
 
@@ -137,6 +194,19 @@ Mesh generate_mesh(const Surface& surface, const std::function<double(const Vec3
     return length;
   };
   return generate(surface, checked, {20, 0.90, 0.25});
+}
+
+Mesh generate_mesh(const Surface& surface, double edge_length, double grading) {
+  check_positive(edge_length, surface);
+  if (!(grading > 0 && grading <= 1))
+    throw InputError(format("%s: grading %g, expected a number greater than 0 and at most 1",
+                            surface.name.c_str(), grading));
+  const auto by_curvature = [&](const Vec3& y) {
+    return edge_length /
+           std::sqrt(1 + surface.weingarten(y).squaredNorm() * std::pow(edge_length / grading, 2));
+  };
+  const double growth = 0.25;
+  return generate_mesh(surface, GradualSize(surface, by_curvature, growth));
 }
 
 }  // namespace esfem

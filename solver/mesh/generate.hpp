@@ -21,4 +21,9 @@ Mesh generate_mesh(const Surface& surface, double edge_length);
 /// than 1.25 times the one asked for.
 Mesh generate_mesh(const Surface& surface, const std::function<double(const Vec3&)>& edge_length);
 
+/// The same, graded by curvature: edges of length h, 1/h² = 1/edge_length² + (kappa_1² + kappa_2²)/grading²,
+/// which is edge_length where the surface is flat, and at most grading times the radius of curvature; and
+/// that grows by at most a quarter of the distance on the surface. Throws InputError unless 0 < grading <= 1.
+Mesh generate_mesh(const Surface& surface, double edge_length, double grading);
+
 }  // namespace esfem

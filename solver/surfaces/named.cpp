@@ -7,6 +7,7 @@
 
 #include "solver/error.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
+#include "solver/surfaces/formula_surface.hpp"
 
 namespace esfem {
 
@@ -72,9 +73,51 @@ const std::vector<Entry>& entries() {
   return list;
 }
 
+Vec3 corner_of(const json& box, int which) {
+  Vec3 corner;
+  bool good = box.is_array() && box.size() == 2 && box[which].is_array() && box[which].size() == 3;
+  for (int i = 0; good && i < 3; ++i) {
+    good = box[which][i].is_number();
+    if (good) corner[i] = box[which][i];
+  }
+  if (good) return corner;
+  throw InputError("surface: found box = " + box.dump() +
+                   "; expected [[x, y, z], [x, y, z]], two corners of a box around the surface");
+}
+
+/// {"level_set": "x^2 + y^2 + z^2 - R^2", "box": [[-2, -2, -2], [2, 2, 2]], "parameters": {"R": 1}}
+Surface surface_of_formula(const json& description) {
+  for (const auto& item : description.items())
+    if (item.key() != "level_set" && item.key() != "box" && item.key() != "parameters")
+      throw InputError("surface: unknown key \"" + item.key() +
+                       "\" beside level_set; known: box, level_set, parameters");
+  const json &formula = description.at("level_set"),
+             parameters = description.value("parameters", json::object());
+  if (!formula.is_string())
+    throw InputError("surface: found level_set = " + formula.dump() +
+                     "; expected a formula in x, y, z as text");
+  if (!description.contains("box"))
+    throw InputError(
+        "surface: a level_set needs \"box\": [[x, y, z], [x, y, z]], two corners of a box around "
+        "the surface");
+  std::map<std::string, double> constants;
+  if (!parameters.is_object())
+    throw InputError("surface: found parameters = " + parameters.dump() +
+                     "; expected {\"name\": number, ..}");
+  for (const auto& item : parameters.items()) {
+    if (!item.value().is_number())
+      throw InputError("surface: parameters: found " + item.key() + " = " + item.value().dump() +
+                       "; expected a number");
+    constants[item.key()] = item.value();
+  }
+  const json& box = description.at("box");
+  return formula_surface(formula, {corner_of(box, 0), corner_of(box, 1)}, constants, "surface: level_set");
+}
+
 }  // namespace
 
 Surface named_surface(const json& description) {
+  if (description.is_object() && description.contains("level_set")) return surface_of_formula(description);
   const std::string name = description.is_object() ? description.value("name", json()).dump() : "";
   for (const Entry& entry : entries()) {
     if (name != json(entry.name).dump()) continue;
@@ -97,7 +140,7 @@ Surface named_surface(const json& description) {
   std::string names;
   for (const Entry& entry : entries()) names += (names.empty() ? "" : ", ") + entry.name;
   throw InputError("surface: " + description.dump() + " names no surface; expected {\"name\": one of " +
-                   names + ", ...}");
+                   names + ", ...} or {\"level_set\": a formula, \"box\": ..}");
 }
 
 std::string named_surfaces_help() {
@@ -107,6 +150,9 @@ std::string named_surfaces_help() {
     for (const auto& [key, value] : entry.defaults) text += ", \"" + key + "\": " + value.dump();
     text += "\n";
   }
+  text +=
+      "  \"level_set\": \"x^2 + y^2 + z^2/c^2 - 1\", \"box\": [[-2, -2, -2], [2, 2, 2]], \"parameters\": "
+      "{\"c\": 0.6}, instead of a name: {d = 0} in a box, for a formula d < 0 inside\n";
   return text;
 }
 

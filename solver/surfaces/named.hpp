@@ -7,7 +7,8 @@
 
 namespace esfem {
 
-/// The surface that {"name": "ellipsoid", "axes": [1, 1, 0.6]} describes. Parameters that are not given have
+/// The surface that {"name": "ellipsoid", "axes": [1, 1, 0.6]} describes, or {"level_set": "..", "box": ..}
+/// (formula_surface). Parameters that are not given have
 /// the defaults of `named_surfaces_help`. Throws InputError for an unknown name or key (listing the known
 /// ones) and for parameters that are no positive numbers or make no smooth surface.
 Surface named_surface(const nlohmann::json& description);

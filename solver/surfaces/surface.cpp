@@ -22,6 +22,14 @@ double Surface::mean_curvature(const Vec3& y) const {
   return shape_at(y).weingarten.trace();
 }
 
+// |kappa_1 + kappa_2|/2 + |kappa_1 - kappa_2|/2, where A - H/2 P has the eigenvalues +-(kappa_1 - kappa_2)/2.
+double Surface::largest_curvature(const Vec3& y) const {
+  const auto [nu, A] = shape_at(y);
+  const double H = A.trace();
+  const Mat3 rest = A - H / 2 * (Mat3::Identity() - nu * nu.transpose());
+  return std::abs(H) / 2 + rest.norm() / std::sqrt(2);
+}
+
 Surface::Shape Surface::shape_at(const Vec3& y) const {
   const LevelSetJet d = level_set(y);
   const double slope = d.gradient.norm();

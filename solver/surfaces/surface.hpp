@@ -42,7 +42,7 @@ struct Surface {
   std::map<std::string, double> parameters;
   std::function<LevelSetJet(const Vec3&)> level_set;
   std::function<double(const Vec3&)> level;  ///< d alone (cheaper; for the mesher)
-  double bounding_radius;                    ///< the surface lies inside this ball around the origin
+  double bounding_radius;                    ///< the surface lies inside this ball around `centre`
   double smallest_curvature_radius;          ///< min over the surface of 1/max(|kappa_1|, |kappa_2|)
   int euler_characteristic;
   /// This surface's own way to the closest point, where there is one (a closed form); otherwise Newton's
@@ -53,6 +53,7 @@ struct Surface {
   /// This surface's own way to pack_size closest points, where it is faster than one after the other; not
   /// finite where it fails.
   std::function<SurfacePoints(const Pack (&x)[3])> own_closest_points = {};
+  Vec3 centre = Vec3::Zero();  ///< of the bounding ball
 
   /// Outward unit normal of the level set through y. Pointwise; y need not lie on the surface.
   Vec3 normal(const Vec3& y) const;
@@ -61,6 +62,8 @@ struct Surface {
   Mat3 weingarten(const Vec3& y) const;
   /// Mean curvature kappa_1 + kappa_2 = tr grad_Gamma nu (kll19 (2.2)); 2/R on a sphere.
   double mean_curvature(const Vec3& y) const;
+  /// max |kappa_i|.
+  double largest_curvature(const Vec3& y) const;
   /// Tangential gradient grad_Gamma H. y must lie on the surface.
   Vec3 mean_curvature_gradient(const Vec3& y) const;
   /// Delta_Gamma H = tr(P Hess H) - H nu . grad H, for any extension of H into space. y must lie on the
