@@ -25,9 +25,6 @@ struct CahnHilliardState {
                                                              {"Mu", &CahnHilliardState::Mu}};
 };
 
-/// Positions of the nodes at a time.
-using NodalMotion = std::function<const Field&(double t)>;
-
 /// A step of bk22 (8.3) with its loads given: what does not depend on f, g and b. As printed (8.3) lacks tau
 /// before f, and the theta of (3.13); with epsilon it is
 ///   delta_0 M(t_n) u + tau A(t_n) w = tau (f + M(t_n) b) - sum_{j>=1} delta_j M(t_{n-j}) u^{n-j},

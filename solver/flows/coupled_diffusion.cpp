@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/coupled_diffusion.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "solver/error.hpp"
@@ -18,12 +17,6 @@ void check(const CoupledDiffusionParameters& parameters, int species) {
   const int count = static_cast<int>(parameters.diffusion.size());
   if (count != species)
     throw InputError(format("%d diffusion coefficients for %d species: expected one each", count, species));
-  for (int l = 0; l < species; ++l) {
-    const double D = parameters.diffusion[l];
-    if (!(D > 0) || !std::isfinite(D))
-      throw InputError(
-          format("diffusion coefficient %g of species %d: expected a positive number", D, l + 1));
-  }
 }
 
 }  // namespace
@@ -36,18 +29,10 @@ CoupledDiffusionScheme::CoupledDiffusionScheme(const SurfaceSpace& space, int sp
       parameters_((check(parameters, species), std::move(parameters))),
       variant_(variant),
       limits_(limits),
+      diffusion_(parameters_.diffusion),
       M_(space.matrix()),
       A_(space.matrix()),
-      spd_(space.pattern()) {
-  for (int l = 0; l < species; ++l) {
-    const double D = parameters_.diffusion[l];
-    auto group = std::find_if(groups_.begin(), groups_.end(),
-                              [D](const EqualDiffusion& candidate) { return candidate.D == D; });
-    if (group == groups_.end()) group = groups_.insert(group, {D, {}, {}});
-    group->species.push_back(l);
-  }
-  for (EqualDiffusion& group : groups_) group.u.resize(space.dofs(), group.species.size());
-}
+      spd_(space.pattern()) {}
 
 void CoupledDiffusionScheme::extrapolate(const BdfStep<State>& step) {
   step.extrapolate(&State::x, x_tilde_);
@@ -84,12 +69,7 @@ void CoupledDiffusionScheme::require_bounded_u(double tau, const Field& u) const
 void CoupledDiffusionScheme::diffuse(const BdfStep<State>& step, const Field& loads, Field& u) {
   step.known_sum(&State::Mu, Mu_sum_);
   u = loads.leftCols(u.cols()) - Mu_sum_ / step.tau;
-  for (EqualDiffusion& group : groups_) {
-    for (std::size_t c = 0; c < group.species.size(); ++c) group.u.col(c) = u.col(group.species[c]);
-    spd_.factorise(step.delta[0] / step.tau, M_, group.D, A_);
-    spd_.solve(group.u);
-    for (std::size_t c = 0; c < group.species.size(); ++c) u.col(group.species[c]) = group.u.col(c);
-  }
+  diffusion_.solve(spd_, step.delta[0] / step.tau, M_, A_, u);
 }
 
 // (2.20) with x from (2.21):
@@ -133,14 +113,41 @@ CoupledDiffusionState coupled_diffusion_state(const SurfaceSpace& space, double 
   return state;
 }
 
-NodalFields nodal_fields(const CoupledDiffusionState& state) {
-  NodalFields fields = {{"v", state.v}};
-  if (state.u.cols() == 1) {
-    fields.push_back({"u", state.u});
-  } else {
-    for (int l = 0; l < state.u.cols(); ++l) fields.push_back({"u" + std::to_string(l + 1), state.u.col(l)});
-  }
+CoupledKinetics::CoupledKinetics(const SurfaceSpace& space, PointwiseKinetics kinetics,
+                                 CoupledDiffusionParameters parameters, CoupledDiffusionVariant variant,
+                                 const RegularityLimits& limits)
+    : space_(space),
+      kinetics_(std::move(kinetics)),
+      species_(static_cast<int>(parameters.diffusion.size())),
+      scheme_(space, species_, std::move(parameters), variant, limits) {}
+
+void CoupledKinetics::step(const BdfStep<State>& step, State& next) {
+  scheme_.extrapolate(step);
+  const auto f_and_g_nu = [&](const Pack* point, Pack* values) {
+    kinetics_(next.t, point, values);
+    const Pack g = values[species_];
+    for (int i = 0; i < 3; ++i) values[species_ + i] = g * point[3 + i];
+  };
+  assemble_pointwise_load(space_, scheme_.x_tilde(), scheme_.u_tilde(), species_ + 3, f_and_g_nu, loads_);
+  scheme_.advance(step, loads_, next);
+}
+
+std::vector<std::string> concentration_names(int species) {
+  if (species == 1) return {"u"};
+  std::vector<std::string> names;
+  for (int l = 1; l <= species; ++l) names.push_back("u" + std::to_string(l));
+  return names;
+}
+
+NodalFields concentration_fields(const Field& v, const Field& u) {
+  NodalFields fields = {{"v", v}};
+  const std::vector<std::string> names = concentration_names(static_cast<int>(u.cols()));
+  for (int l = 0; l < u.cols(); ++l) fields.push_back({names[l], u.col(l)});
   return fields;
+}
+
+NodalFields nodal_fields(const CoupledDiffusionState& state) {
+  return concentration_fields(state.v, state.u);
 }
 
 }  // namespace esfem

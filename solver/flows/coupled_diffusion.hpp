@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <utility>
 #include <vector>
 
+#include "solver/assembly/pointwise_load.hpp"
+#include "solver/flows/species_diffusion.hpp"
 #include "solver/geometry/regularity.hpp"
 #include "solver/linalg/spd_solver.hpp"
 #include "solver/nodal_field.hpp"
@@ -61,13 +64,6 @@ class CoupledDiffusionScheme {
   void advance(const BdfStep<State>& step, const Field& loads, State& next);
 
  private:
-  /// Species of one diffusion coefficient, which share a factorisation and a solve.
-  struct EqualDiffusion {
-    double D;
-    std::vector<int> species;
-    Field u;
-  };
-
   void require_bounded_u(double tau, const Field& u) const;
   void diffuse(const BdfStep<State>& step, const Field& loads, Field& u);
   void move_regularised(const BdfStep<State>& step, const Field& loads, State& next);
@@ -77,7 +73,7 @@ class CoupledDiffusionScheme {
   CoupledDiffusionParameters parameters_;
   CoupledDiffusionVariant variant_;
   RegularityLimits limits_;
-  std::vector<EqualDiffusion> groups_;
+  SpeciesDiffusion diffusion_;
   SymmetricMatrix M_, A_;
   SpdSolver spd_;
   Field x_tilde_, u_tilde_, x_sum_, A_x_sum_, Mu_sum_, Mv_sum_;
@@ -134,9 +130,40 @@ class CoupledDiffusion {
   Field loads_;
 };
 
+/// Values of f_1, .., f_m and, for CoupledKinetics, g at a quadrature point: x (3), the unit normal (3), u_1,
+/// .., u_m (assemble_pointwise_load).
+using PointwiseKinetics = std::function<void(double t, const Pack* point, Pack* values)>;
+
+/// CoupledDiffusion for f and g that are known only at run time, without gradients of u.
+class CoupledKinetics {
+ public:
+  using State = CoupledDiffusionState;
+
+  /// The number of species is that of the diffusion coefficients. Otherwise as CoupledDiffusion.
+  CoupledKinetics(const SurfaceSpace& space, PointwiseKinetics kinetics,
+                  CoupledDiffusionParameters parameters, CoupledDiffusionVariant variant,
+                  const RegularityLimits& limits = {});
+
+  /// As that of CoupledDiffusion.
+  void step(const BdfStep<State>& step, State& next);
+
+ private:
+  const SurfaceSpace& space_;
+  PointwiseKinetics kinetics_;
+  int species_;
+  CoupledDiffusionScheme scheme_;
+  Field loads_;
+};
+
 /// The state with given nodal values, and Mu = M(x) u, Mv = M(x) v: x̃ = x at the starting values. Throws
 /// InputError when v is not N x 3 or u has not N rows.
 CoupledDiffusionState coupled_diffusion_state(const SurfaceSpace& space, double t, Field x, Field v, Field u);
+
+/// u or, for several species, u1, u2, ..
+std::vector<std::string> concentration_names(int species);
+
+/// v (N x 3) and the concentrations (N x m) under their names.
+NodalFields concentration_fields(const Field& v, const Field& u);
 
 /// The flow's own nodal fields beside x: v, and u or, for several species, u1, u2, ...
 NodalFields nodal_fields(const CoupledDiffusionState& state);

@@ -11,6 +11,9 @@ namespace esfem {
 /// Velocities v at time t in the points x of a surface (N x 3 each; v comes with any size).
 using Velocity = std::function<void(double t, const Field& x, Field& v)>;
 
+/// Positions of the nodes at a time.
+using NodalMotion = std::function<const Field&(double t)>;
+
 /// v = V nu of the level set {d(x, t) = 0}, V = -d_t/|grad d| (bk22 §9): the velocity -d_t grad d/|grad d|².
 /// The functor d returns the time derivative and the gradient in space in its last arguments.
 Velocity normal_velocity(std::function<void(const Vec3& x, double t, double& d_t, Vec3& gradient)> level_set);

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "solver/problems/formula_data.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "solver/error.hpp"
+
+namespace esfem {
+
+namespace {
+
+Field with_time(const Field& x, double t) {
+  Field points(x.rows(), 4);
+  points << x, Eigen::VectorXd::Constant(x.rows(), t);
+  return points;
+}
+
+}  // namespace
+
+FormulaNames names_in_space_time(FormulaNames names) {
+  names.variables = {"x", "y", "z", "t"};
+  return names;
+}
+
+FormulaNames names_of_kinetics(int species, FormulaNames names) {
+  names = names_in_space_time(std::move(names));
+  for (const std::string& name : concentration_names(species)) names.variables.push_back(name);
+  return names;
+}
+
+Field nodal_values(const CompiledFormulas& formulas, const Field& x, double t) {
+  return formulas(with_time(x, t));
+}
+
+PointwiseKinetics formula_kinetics(const std::vector<Formula>& f_and_g) {
+  const std::size_t variables = f_and_g.at(0).names().variables.size();
+  return [compiled = CompiledFormulas(f_and_g), in = std::vector<Pack>(variables)](
+             double t, const Pack* point, Pack* values) mutable {
+    std::copy(point, point + 3, in.begin());
+    in[3] = pack(t);
+    std::copy(point + 6, point + 6 + (in.size() - 4), in.begin() + 4);  // behind the normal
+    compiled.evaluate(in.data(), values);
+  };
+}
+
+Velocity formula_velocity(const std::vector<Formula>& components) {
+  if (components.size() != 3)
+    throw InputError(format("a velocity of %zu components; expected 3", components.size()));
+  return [compiled = CompiledFormulas(components)](double t, const Field& x, Field& v) {
+    v = compiled(with_time(x, t));
+  };
+}
+
+Velocity formula_normal_velocity(const Formula& d) {
+  const CompiledFormulas derivatives(
+      {d.derivative("t"), d.derivative("x"), d.derivative("y"), d.derivative("z")});
+  return [derivatives](double t, const Field& x, Field& v) {
+    const Field values = derivatives(with_time(x, t));
+    v = values.rightCols(3);
+    v.array().colwise() *= -values.col(0).array() / v.rowwise().squaredNorm().array();
+  };
+}
+
+FormulaMixture::FormulaMixture(const Formula& potential, const std::vector<Formula>& source)
+    : potential_({potential}),
+      slope_({potential.derivative("u")}),
+      second_({potential.derivative("u").derivative("u")}),
+      source_(source) {}
+
+Pack FormulaMixture::value(const CompiledFormulas& formula, double t, const PointData<1>& p) {
+  const Pack in[] = {p.x[0], p.x[1], p.x[2], pack(t), p.u[0]};
+  Pack out;
+  formula.evaluate(in, &out);
+  return out;
+}
+
+void FormulaMixture::b(double t, const Field& x, Field& nodal) const {
+  if (source_.count() > 0) nodal = nodal_values(source_, x, t);
+}
+
+double FormulaMixture::energy(const SurfaceSpace& space, double t, const Field& x, const Field& u,
+                              double epsilon) const {
+  const auto density = [&](const PointData<1>& p, Integrand<1, 0>& load) {
+    load.value[0] = epsilon / 2 * dot(p.grad[0], p.grad[0]) + value(potential_, t, p) / epsilon;
+  };
+  Field load;
+  space.assemble_load<1, 1, 0>(x, u, density, load);
+  return load.sum();  // the shape functions sum to 1
+}
+
+}  // namespace esfem

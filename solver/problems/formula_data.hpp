@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Data of flows from formulas in x, y, z, t, and concentrations.
+#pragma once
+
+#include <vector>
+
+#include "solver/flows/cahn_hilliard.hpp"
+#include "solver/flows/coupled_diffusion.hpp"
+#include "solver/formulas/formula.hpp"
+#include "solver/geometry/prescribed_motion.hpp"
+
+namespace esfem {
+
+/// x, y, z, t, with the constants and definitions of `names`.
+FormulaNames names_in_space_time(FormulaNames names);
+/// The same with the concentration_names.
+FormulaNames names_of_kinetics(int species, FormulaNames names);
+
+/// One column for each formula in space and time, in the nodes x at time t.
+Field nodal_values(const CompiledFormulas& formulas, const Field& x, double t);
+
+/// f_1, .., f_m and, for CoupledKinetics, g: formulas with names_of_kinetics.
+PointwiseKinetics formula_kinetics(const std::vector<Formula>& f_and_g);
+
+/// The velocity with three components in space and time.
+Velocity formula_velocity(const std::vector<Formula>& components);
+/// The normal velocity of the level set of a formula in space and time (normal_velocity).
+Velocity formula_normal_velocity(const Formula& level_set);
+
+/// The Problem of CahnHilliard (f = 0) and of LinearisedCahnHilliard for a potential F(u), g = F', and a
+/// source b in space and time, which is interpolated in the nodes.
+class FormulaMixture {
+ public:
+  /// potential: a formula in x, y, z, t, u. source: none where it is empty.
+  FormulaMixture(const Formula& potential, const std::vector<Formula>& source);
+
+  Pack f(double, const PointData<1>&) const { return Pack{}; }
+  Pack g(double t, const PointData<1>& p) const { return value(slope_, t, p); }
+  Pack dg(double t, const PointData<1>& p) const { return value(second_, t, p); }
+  void b(double t, const Field& x, Field& nodal) const;
+
+  /// Integral of epsilon/2 |grad u|² + F(u)/epsilon over Gamma_h[x].
+  double energy(const SurfaceSpace& space, double t, const Field& x, const Field& u, double epsilon) const;
+
+ private:
+  static Pack value(const CompiledFormulas& formula, double t, const PointData<1>& p);
+
+  CompiledFormulas potential_, slope_, second_, source_;
+};
+
+}  // namespace esfem
