@@ -6,6 +6,8 @@
 //               build/bin/evolve reference/examples/dumbbell.json
 //               build/bin/evolve reference/examples/tumour.json
 //               build/bin/evolve reference/examples/willmore.json
+//               build/bin/evolve reference/examples/genus2.json
+//               build/bin/evolve reference/examples/turing.json
 //
 // Writes the nodal values at the end, a time series and snapshots, as the file says; `evolve --help` explains
 // its keys.

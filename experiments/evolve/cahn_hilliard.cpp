@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/evolve/advice.hpp"
+#include "experiments/evolve/formulas.hpp"
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/evolve/start.hpp"
 #include "experiments/harness/warn.hpp"
@@ -85,6 +86,7 @@ std::vector<Entry> cahn_hilliard_entries() {
                         {Key::number, "mean", 0, "of u over the surface"},
                         {Key::number, "disturbance", 0.1, "of u"},
                         {Key::seed, "seed", 1, "of the disturbance"}};
+  mixture.formulas = {initial_key({"u"})};
   mixture.run = run_phase_separation;
   mixture.starts = {{"u"}, {"u", "w"}};
   mixture.starts_beside_surface = true;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "experiments/evolve/formulas.hpp"
 #include "experiments/evolve/initial.hpp"
 #include "experiments/evolve/mesh.hpp"
 #include "experiments/evolve/series_lines.hpp"
@@ -81,13 +82,46 @@ Quadrature quadrature(const json& description, const std::string& where) {
 Settings settings(const JsonReader& reader, const std::string& key, const std::vector<Key>& known,
                   const Entry& entry) {
   const std::string where = reader.where() + ": " + key;
+  const bool takes_any_number = entry.takes_own_parameters && key == "parameters";
   if (!reader.has(key)) return Settings(json::object(), known, where);
-  if (known.empty()) {
+  if (known.empty() && !takes_any_number) {
     const std::string name = entry.problem.empty() ? "flow " + entry.flow : "problem " + entry.problem;
     throw InputError(reader.where() + ": " + name + " has no " + (key == "variant" ? "variants" : key) +
                      "; expected no key " + key);
   }
-  return Settings(reader.object(key), known, where);
+  return Settings(reader.object(key), known, where, takes_any_number);
+}
+
+/// The keys whose values have formulas, of all flows and of any.
+std::set<std::string> formula_keys() {
+  std::set<std::string> names = {"exact", "definitions"};
+  for (const Entry& entry : entries())
+    for (const FormulaKey& key : entry.formulas) names.insert(key.name);
+  return names;
+}
+
+/// Whether a key is "initial" with a file, which has no formulas.
+bool names_file(const JsonReader& reader, const std::string& key) {
+  return key == "initial" && reader.object(key).contains("file");
+}
+
+void read_formulas(const JsonReader& reader, EvolveConfig& config) {
+  std::set<std::string> known = {"exact", "definitions"};
+  for (const std::string& key : known)
+    if (reader.has(key)) config.formulas[key] = reader.object(key);
+  const Entry& entry = *config.entry;
+  const std::string name = entry.problem.empty() ? "flow " + entry.flow : "problem " + entry.problem;
+  for (const FormulaKey& key : entry.formulas) {
+    known.insert(key.name);
+    if (reader.has(key.name) && !names_file(reader, key.name))
+      config.formulas[key.name] = reader.value(key.name);
+    else if (key.is_required)
+      throw InputError(reader.where() + ": " + name + " needs the key " + key.name + "; expected \"" +
+                       key.name + "\": " + key.example);
+  }
+  for (const std::string& key : formula_keys())
+    if (reader.has(key) && known.count(key) == 0 && !names_file(reader, key))
+      throw InputError(reader.where() + ": " + name + " takes no " + key + "; expected no key " + key);
 }
 
 /// "limits": the bounds beyond which a run is singular.
@@ -159,10 +193,11 @@ SnapshotPlan snapshot_plan(const JsonReader& output) {
 }  // namespace
 
 EvolveConfig evolve_config(const json& given, const std::string& source) {
-  JsonReader(given, source)
-      .accept_only({"$schema", "flow", "surface", "mesh", "degree", "bdf", "tau", "steps", "start",
-                    "quadrature", "variant", "output", "problem", "parameters", "adaptive", "limits",
-                    "initial", "stop"});
+  std::set<std::string> known = {"$schema", "flow",       "surface",  "mesh",       "degree",  "bdf",
+                                 "tau",     "steps",      "start",    "quadrature", "variant", "output",
+                                 "problem", "parameters", "adaptive", "limits",     "initial", "stop"};
+  known.merge(formula_keys());
+  JsonReader(given, source).accept_only(known);
   std::optional<Initial> earlier = read_initial(given, source);
   json description = given;
   if (earlier) description.update(earlier->taken_over);
@@ -171,6 +206,7 @@ EvolveConfig evolve_config(const json& given, const std::string& source) {
   const Entry& entry =
       entry_named(reader.text("flow"), reader.has("problem") ? reader.text("problem") : "", source);
   config.entry = &entry;
+  config.source = source;
   if (reader.has("adaptive"))
     config.adaptive = adaptive_grid(reader, entry);
   else
@@ -190,6 +226,7 @@ EvolveConfig evolve_config(const json& given, const std::string& source) {
   if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
   config.variant = settings(reader, "variant", entry.variant, entry);
   config.parameters = settings(reader, "parameters", entry.parameters, entry);
+  read_formulas(reader, config);
   if (entry.check) entry.check(config, source);
   std::optional<int> degree;
   if (reader.has("degree")) degree = reader.integer_within("degree", 0, 1, max_degree);
@@ -213,6 +250,7 @@ EvolveConfig evolve_config(const json& given, const std::string& source) {
   move_near_origin(config);
   scale_defaults(reader, config);
   if (earlier) require_start(config, source + ": initial");
+  take_initial_values(config);
   return config;
 }
 

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <string>
 
 #include "experiments/evolve/entry.hpp"
@@ -36,6 +37,9 @@ struct EvolveConfig {
   struct {
     std::optional<double> speed, seconds, area;  ///< see StopRule
   } stop;
+  nlohmann::json formulas = nlohmann::json::object();  ///< what is given under the entry's formula keys
+  std::set<std::string> initial;                       ///< names in `fields` that "initial" gives
+  std::string source;                                  ///< the file, for messages
   std::string nodal = "-", series;  ///< output files; "-" is standard output, empty: not wanted
   bool nodal_has_history = false;
   std::string checkpoint;  ///< a file from which a stopped run resumes; empty: not wanted

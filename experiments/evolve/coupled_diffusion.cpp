@@ -2,6 +2,7 @@
 #include "solver/flows/coupled_diffusion.hpp"
 
 #include "experiments/evolve/advice.hpp"
+#include "experiments/evolve/formulas.hpp"
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/evolve/start.hpp"
 #include "solver/error.hpp"
@@ -112,6 +113,7 @@ std::vector<Entry> coupled_diffusion_entries() {
       {Key::number, "delta", kinetics.delta, "of growth by the activator", -1},
       {Key::number, "disturbance", 0.01, "of the steady state"},
       {Key::seed, "seed", 1, "of the disturbance"}};
+  tumour.formulas = {initial_key({"u1", "u2"})};
   tumour.run = run_tumour_growth;
   tumour.starts = {{"u1", "u2"}, {"u1", "u2", "v"}};
   tumour.starts_beside_surface = true;

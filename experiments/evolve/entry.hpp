@@ -15,12 +15,21 @@ namespace esfem {
 struct EvolveConfig;
 struct Run;
 
+/// A key of the configuration whose value has formulas.
+struct FormulaKey {
+  std::string name, example, help;
+  nlohmann::json schema;
+  bool is_required = false;
+};
+
 struct Entry {
   std::string flow;          ///< its name in configurations
   std::string problem = "";  ///< "": the flow has one alone, without a name
   std::string help;          ///< one line
   std::string fields;        ///< nodal fields of the output beside x and v
   std::vector<Key> variant = {}, parameters = {};
+  std::vector<FormulaKey> formulas = {};
+  bool takes_own_parameters = false;  ///< "parameters" may have other numbers, too: formulas name them
 
   /// Completes the run: makes flow and initial state, and calls run_flow (run_flow.hpp).
   std::function<void(const Run&)> run;
@@ -64,6 +73,8 @@ std::vector<Entry> generalised_mean_curvature_entries();
 std::vector<Entry> willmore_entries();
 std::vector<Entry> willmore_competitor_entries();
 std::vector<Entry> coupled_diffusion_entries();
+std::vector<Entry> kinetics_entries();
 std::vector<Entry> cahn_hilliard_entries();
+std::vector<Entry> mixture_entries();
 
 }  // namespace esfem

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/evolve/config.hpp"
+#include "experiments/evolve/formulas.hpp"
 #include "solver/surfaces/named.hpp"
 
 namespace esfem {
@@ -30,6 +31,17 @@ std::string lines_of(const char* object, const std::vector<Key>& keys) {
   return text;
 }
 
+std::string lines_of(const std::vector<FormulaKey>& keys) {
+  std::string text;
+  for (const FormulaKey& key : keys) {
+    std::string line = "      \"" + key.name + "\"";
+    line.resize(21, ' ');
+    text += line + key.example + (key.is_required ? ", needed" : "") + "\n" + std::string(21, ' ') +
+            key.help + "\n";
+  }
+  return text;
+}
+
 std::string starts_of(const Entry& entry) {
   std::string text;
   for (const std::vector<std::string>& names : entry.starts) {
@@ -54,7 +66,7 @@ std::string help_of(const Entry& entry) {
   if (entry.time_power != 2)
     text += "      times          in units of L^" + std::to_string(entry.time_power) + "\n";
   return text + lines_of("variant", entry.variant) + lines_of("parameters", entry.parameters) +
-         starts_of(entry);
+         lines_of(entry.formulas) + starts_of(entry);
 }
 
 }  // namespace
@@ -101,6 +113,8 @@ std::string evolve_config_help() {
    "limits": {"curvature_size": 5,            singular: |H| times edge length above this (or 4 times its initial maximum);
               "radius_ratio": 0.01,           radius ratio of an element below this (or the square of the initial minimum; no
               "normal_length": 4},            limit if that minimum is < 0.01); |nu| or 1/|nu| of a flow's nu above this
+  "exact": {"u": "exp(-6*t)*x*y"},           a solution by formulas of x, y, z, t: the series has the errors of each step
+  "definitions": {"r2": "x^2 + y^2"},        names for parts of formulas
    "output": {"nodal": "end.json",            default: nodal values on standard output
               "history": true,                nodal has the steps before, so that "initial" goes on bit for bit; default: true
                                               with tau and a file
@@ -119,6 +133,7 @@ numbers up to 4/L and phases relative to the origin (on a mesh without "surface"
 mean is 0.
 Surfaces and their defaults:
 )" + named_surfaces_help() +
+         formulas_help() +
          R"(Output: nodal has t, x, v and the nodal fields of the flow (see Flows) at the last step, one row per node; the nodes of the
 mesh file come first, in its order. elements has one row per element: its nodes, counted from 0 (corners, then the nodes of
 the edges 01, 12, 20, then inner ones). node_numbers are the numbers of the nodes in the file, if these are not 1, 2, ..
@@ -126,7 +141,8 @@ A run starts from those nodal values of its mesh file ($NodeData of .msh, point 
 of .ply: H, or nu_x, nu_y, nu_z) that are listed with its flow ("starts from"), and reports this. t starts at 0, and defaults are relative to the length of this surface: to continue with
 the parameters of an earlier run, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H,
 h, worst_angle (degrees), worst_radius_ratio; if the flow has nu, also min_nu and max_nu; for willmore and surface_diffusion
-kappa_energy, 1/2 int |kappa|² of the surface itself; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
+kappa_energy, 1/2 int |kappa|² of the surface itself; with "exact" the nodal errors u_nodal_L2, u_nodal_H1 and
+u_nodal_H1_semi of each field that has a formula; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
 (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as field data TimeValue, step, flow and
 configuration (this file; texts are arrays of bytes). If the flow has no nu, then max_H, willmore_energy, and nu and H of
 the snapshots are those of the discrete surface.

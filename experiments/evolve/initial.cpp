@@ -152,6 +152,8 @@ Initial from_mesh_file(const JsonReader& whole, const std::string& name) {
 std::optional<Initial> read_initial(const json& description, const std::string& source) {
   const JsonReader whole(description, source);
   if (!whole.has("initial")) return {};
+  const bool has_file = whole.object("initial").contains("file");
+  if (whole.has("mesh") && !has_file) return {};
   if (whole.has("mesh")) throw InputError(whole.where() + ": found initial and mesh; expected one of them");
   const JsonReader asked(whole.object("initial"), whole.where() + ": initial");
   asked.accept_only({"file", "time"});

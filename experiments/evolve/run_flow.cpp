@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "experiments/evolve/advice.hpp"
+#include "experiments/evolve/mixture.hpp"
 #include "experiments/harness/stop_signal.hpp"
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/diagnostics.hpp"
@@ -97,8 +98,11 @@ UniformSteps steps_of(const Run& run, bool has_exact_solution) {
 void record_more(const Run& run, const CahnHilliardState& state) {
   Series& series = run.recorder.series();
   series["mass"].push_back(state.Mu.sum());
+  const double epsilon = run.config.parameters.number("epsilon");
   series["energy"].push_back(
-      ginzburg_landau_energy(run.space, state.x, state.u, run.config.parameters.number("epsilon")));
+      run.config.formulas.contains("potential")
+          ? mixture_of(run.config).energy(run.space, state.t, state.x, state.u, epsilon)
+          : ginzburg_landau_energy(run.space, state.x, state.u, epsilon));
 }
 
 }  // namespace esfem

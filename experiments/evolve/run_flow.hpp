@@ -10,6 +10,7 @@
 
 #include "experiments/evolve/config.hpp"
 #include "experiments/evolve/entry.hpp"
+#include "experiments/evolve/exact.hpp"
 #include "experiments/evolve/history.hpp"
 #include "experiments/evolve/series_lines.hpp"
 #include "experiments/evolve/stop.hpp"
@@ -100,11 +101,14 @@ template <class Flow>
 void run_flow(Flow&& flow, const Run& run, const typename std::decay_t<Flow>::State& initial,
               const std::function<typename std::decay_t<Flow>::State(double t)>& exact = {}) {
   using State = typename std::decay_t<Flow>::State;
+  ExactFormulas exact_formulas(run.config, run.space);
   const auto integrate_watched = [&](Watch& watch, const auto& steps, auto start, History<State>& past) {
     start.after_substep = [&](double t) { watch.look_at_substep(t); };
     integrate_keeping(past, flow, steps, start, run.checkpoint, [&](int n, const State& state) {
       watch.look_before();
       run.recorder.record(n, state);
+      if (!exact_formulas.empty())
+        exact_formulas.record(state.t, state.x, nodal_fields(state), run.recorder.series());
       record_more(run, state);
       return watch.look_at_step(n, state.t);
     });

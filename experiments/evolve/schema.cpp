@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "experiments/evolve/config.hpp"
+#include "experiments/evolve/formulas.hpp"
 #include "solver/fe/lagrange.hpp"
 
 namespace esfem {
@@ -48,16 +49,29 @@ json schema_of(const Key& key) {
   return schema;
 }
 
-json schema_of(const std::vector<Key>& keys) {
+json schema_of(const std::vector<Key>& keys, bool takes_any_number = false) {
   json properties = json::object();
   for (const Key& key : keys) properties[key.name] = schema_of(key);
-  return object_of(properties);
+  json schema = object_of(properties);
+  if (takes_any_number) schema["additionalProperties"] = {{"type", "number"}};
+  return schema;
+}
+
+/// "initial" with a file.
+json initial_file_schema() {
+  const json text = {{"type", "string"}};
+  json schema = object_of(
+      {{"file", described(text, "nodal output of an earlier run, snapshot, or mesh with nodal values")},
+       {"time", described({{"type", "number"}}, "of a file that does not say it")}});
+  schema["required"] = {"file"};
+  return described(schema, "instead of mesh: goes on from an earlier run");
 }
 
 /// What "variant", "parameters" and "bdf" may be for one entry, described by its help.
 json rule_of(const Entry& entry, bool is_default) {
   json is = {{"properties", {{"flow", {{"const", entry.flow}}}}}, {"required", {"flow"}}};
-  json then = {{"variant", schema_of(entry.variant)}, {"parameters", schema_of(entry.parameters)}};
+  json then = {{"variant", schema_of(entry.variant)},
+               {"parameters", schema_of(entry.parameters, entry.takes_own_parameters)}};
   then["bdf"] = {{"maximum", entry.highest_order}};
   if (entry.problem.empty()) {
     then["problem"] = false;
@@ -66,7 +80,16 @@ json rule_of(const Entry& entry, bool is_default) {
     if (!is_default) is["required"].push_back("problem");
   }
   if (!entry.takes_adaptive_steps) then["adaptive"] = false;
-  return {{"if", is}, {"then", described({{"properties", then}}, entry.help)}};
+  json required = json::array();
+  for (const Entry& other : entries())
+    for (const FormulaKey& key : other.formulas) then[key.name] = false;
+  then["initial"] = initial_file_schema();
+  for (const FormulaKey& key : entry.formulas) {
+    then[key.name] = described(key.schema, key.help);
+    if (key.name == "initial") then[key.name] = {{"anyOf", {then[key.name], initial_file_schema()}}};
+    if (key.is_required) required.push_back(key.name);
+  }
+  return {{"if", is}, {"then", described({{"properties", then}, {"required", required}}, entry.help)}};
 }
 
 /// The keys that all flows have.
@@ -107,9 +130,6 @@ json common_properties() {
       {"every", described(integer(0, 100000000), "snapshots at every n-th step")},
       {"every_time", described(positive, "snapshots at multiples of this time")},
       {"times", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
-  const json initial = {
-      {"file", described(text, "nodal output of an earlier run, snapshot, or mesh with nodal values")},
-      {"time", described({{"type", "number"}}, "of a file that does not say it")}};
   const json stop = {{"speed", described(positive, "stationary: largest |v| in the nodes below this")},
                      {"area", described(positive, "area relative to that at the start")},
                      {"seconds", described(positive, "of wall-clock time")}};
@@ -127,7 +147,7 @@ json common_properties() {
               {"parameters", described(numbers, "numbers that the formula names")}}},
             {"oneOf", {{{"required", {"name"}}}, {{"required", {"level_set", "box"}}}}}}},
           {"mesh", object_of(mesh)},
-          {"initial", described(object_of(initial), "instead of mesh: goes on from an earlier run")},
+          {"initial", {{"type", "object"}}},
           {"stop", described(object_of(stop), "ends the run before its last step")},
           {"degree", described(integer(1, max_degree), "of the finite elements")},
           {"bdf", described(integer(1, max_bdf_order), "order of the backward difference formula")},
@@ -137,6 +157,8 @@ json common_properties() {
           {"adaptive", described(object_of(adaptive), "instead of tau, steps and start")},
           {"quadrature", object_of({{"conical", integer(1, 20)}, {"degree", integer(1, 20)}})},
           {"limits", object_of(limits)},
+          {"exact", exact_schema()},
+          {"definitions", definitions_schema()},
           {"output", object_of(output)}};
 }
 
@@ -149,6 +171,7 @@ json evolve_schema() {
     const bool is_first = std::find(flows.begin(), flows.end(), entry.flow) == flows.end();
     if (is_first) flows.push_back(entry.flow);
     if (!entry.problem.empty()) problems.push_back(entry.problem);
+    for (const FormulaKey& key : entry.formulas) properties[key.name] = json::object();
     rules.push_back(rule_of(entry, is_first));
   }
   properties["flow"] = {{"enum", flows}};
@@ -158,7 +181,9 @@ json evolve_schema() {
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "Configuration of evolve";
   schema["required"] = {"flow"};
-  schema["oneOf"] = {{{"required", {"mesh"}}}, {{"required", {"initial"}}}};
+  schema["anyOf"] = {
+      {{"required", {"mesh"}}},
+      {{"required", {"initial"}}, {"properties", {{"initial", {{"required", {"file"}}}}}}}};
   schema["allOf"] = rules;
   return schema;
 }

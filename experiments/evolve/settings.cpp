@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-json number(const JsonReader& reader, const Key& key) {
+json number_in(const JsonReader& reader, const Key& key) {
   const double value = reader.number(key.name);
   const bool is_good = key.kind == Key::positive ? value > 0 : key.kind != Key::not_negative || value >= 0;
   if (is_good) return value;
@@ -42,17 +42,20 @@ json value_of(const JsonReader& reader, const Key& key) {
     if (const json value = reader.truth_or_text(key.name); value.is_boolean()) return value;
     return known_word(reader, key);
   default:
-    return number(reader, key);
+    return number_in(reader, key);
   }
 }
 
 }  // namespace
 
-Settings::Settings(const json& given, const std::vector<Key>& keys, const std::string& where) {
+Settings::Settings(const json& given, const std::vector<Key>& keys, const std::string& where,
+                   bool takes_any_number) {
   const JsonReader reader(given, where);
   std::set<std::string> known;
   for (const Key& key : keys) known.insert(key.name);
-  reader.accept_only(known);
+  if (!takes_any_number) reader.accept_only(known);
+  for (const auto& item : given.items())
+    if (known.count(item.key()) == 0) values_[item.key()] = reader.number(item.key());
   for (const Key& key : keys) {
     if (reader.has(key.name)) {
       values_[key.name] = value_of(reader, key);
@@ -61,6 +64,13 @@ Settings::Settings(const json& given, const std::vector<Key>& keys, const std::s
       defaults_.push_back(key);
     }
   }
+}
+
+std::map<std::string, double> Settings::numbers() const {
+  std::map<std::string, double> numbers;
+  for (const auto& item : values_.items())
+    if (item.value().is_number()) numbers[item.key()] = item.value();
+  return numbers;
 }
 
 void Settings::scale_defaults(double L) {

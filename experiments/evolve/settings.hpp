@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -25,15 +26,18 @@ inline Key word(const std::string& name, const std::vector<std::string>& words, 
 class Settings {
  public:
   Settings() = default;
-  /// Throws InputError, headed by `where`, for unknown keys (listing the known ones) and values of the wrong
-  /// type or range.
-  Settings(const nlohmann::json& given, const std::vector<Key>& keys, const std::string& where);
+  /// Throws InputError, headed by `where`, for unknown keys (listing the known ones), which are numbers where
+  /// takes_any_number is true, and for values of the wrong type or range.
+  Settings(const nlohmann::json& given, const std::vector<Key>& keys, const std::string& where,
+           bool takes_any_number = false);
 
   bool has(const std::string& key) const { return values_.contains(key); }
   double number(const std::string& key) const { return values_.at(key).get<double>(); }
   int integer(const std::string& key) const { return values_.at(key).get<int>(); }
   bool truth(const std::string& key) const { return values_.at(key).get<bool>(); }
   bool is(const std::string& key, const char* word) const { return values_.at(key) == word; }
+  /// All that are numbers.
+  std::map<std::string, double> numbers() const;
   double number_or(const std::string& key, double otherwise) const {
     return has(key) ? number(key) : otherwise;
   }

@@ -124,10 +124,12 @@ std::string curvature_start_remark(const EvolveConfig& config) {
 
 std::string start_remark(const EvolveConfig& config) {
   std::map<std::string, bool> used;
-  for (const NodalField& field : config.fields) used[field.name] = false;
+  for (const NodalField& field : config.fields)
+    if (config.initial.count(field.name) == 0) used[field.name] = false;
   for (const Names& names : possible_starts(config))
     if (has_all(config, names))
-      for (const std::string& name : names) used[name] = true;
+      for (const std::string& name : names)
+        if (config.initial.count(name) == 0) used[name] = true;
   std::string taken, ignored;
   for (const auto& [name, is_used] : used) {
     std::string& list = is_used ? taken : ignored;

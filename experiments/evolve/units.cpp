@@ -11,7 +11,8 @@ namespace esfem {
 void move_near_origin(EvolveConfig& config) {
   if (config.surface) return;
   Field& x = config.mesh.nodes;
-  config.origin = far_centre(x, characteristic_length(config.mesh));
+  // Formulas are functions of the file's own coordinates.
+  if (config.formulas.empty()) config.origin = far_centre(x, characteristic_length(config.mesh));
   x.rowwise() -= config.origin.transpose();
   config.disturbance_origin = centroid(config.mesh);
   if (config.history.is_object())  // its positions have been moved already

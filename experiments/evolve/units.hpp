@@ -6,8 +6,8 @@
 
 namespace esfem {
 
-/// Moves a mesh without exact surface to where its coordinates keep their digits, and finds the origins of
-/// the configuration.
+/// Moves a mesh without exact surface and formulas to where its coordinates keep their digits, and finds the
+/// origins of the configuration.
 void move_near_origin(EvolveConfig& config);
 
 /// Defaults with units hold for a surface with length 1. For one with length L (characteristic_length) they

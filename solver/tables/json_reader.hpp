@@ -32,6 +32,7 @@ class JsonReader {
   int integer_within(const std::string& key, int otherwise, int low, int high) const;
   const nlohmann::json& object(const std::string& key) const;
   const nlohmann::json& array(const std::string& key) const;
+  const nlohmann::json& value(const std::string& key) const { return at(key); }
   /// Throws when there is a key that is not in `known`, and lists these.
   void accept_only(const std::set<std::string>& known) const;
   /// The one key of an object that must have exactly one of `known`.

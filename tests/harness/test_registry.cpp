@@ -47,21 +47,30 @@ TEST(Registry, ANameThatNoEntryHasReachesNoRun) {
                     HasSubstr("expected one of bgn, bgn_willmore, cahn_hilliard")));
   EXPECT_THAT(refusal({{"flow", ""}}), HasSubstr("expected one of"));
   EXPECT_THAT(refusal({{"flow", "coupled_diffusion"}, {"problem", "growing"}}),
-              HasSubstr("expected one of growing_sphere, tumour_growth"));
+              HasSubstr("expected one of growing_sphere, kinetics, tumour_growth"));
   EXPECT_THAT(refusal({{"flow", "dziuk"}, {"problem", "growing_sphere"}}),
               HasSubstr("expected no key problem"));
   for (const Entry& entry : entries()) EXPECT_NE(refusal({{"flow", entry.flow + "x"}}), "");
 }
 
+/// A configuration of this flow and problem with what it needs.
+json needed_by(const Entry& entry) {
+  json flow = {{"flow", entry.flow}};
+  if (!entry.problem.empty()) flow["problem"] = entry.problem;
+  for (const FormulaKey& key : entry.formulas)
+    if (key.is_required) flow[key.name] = json::parse(key.example);
+  return flow;
+}
+
 TEST(Registry, EveryKeyIsReadAndCheckedWhereItBelongs) {
   for (const Entry& entry : entries()) {
-    json flow = {{"flow", entry.flow}};
-    if (!entry.problem.empty()) flow["problem"] = entry.problem;
+    const json flow = needed_by(entry);
     EXPECT_EQ(refusal(flow), "") << flow;
     for (const auto& [object, keys] :
          {std::pair("variant", &entry.variant), {"parameters", &entry.parameters}}) {
       json bad = flow;
-      bad[object] = {{"no_such_key", 1}};
+      const bool takes_any_number = entry.takes_own_parameters && object == std::string("parameters");
+      bad[object] = {{"no_such_key", takes_any_number ? json("text") : json(1)}};
       EXPECT_NE(refusal(bad), "") << bad;
       for (const Key& key : *keys) {
         bad[object] = {{key.name, json::array()}};
@@ -105,6 +114,33 @@ TEST(Registry, HelpAndSchemaKnowEveryKey) {
       EXPECT_TRUE((*rule)["then"]["properties"]["parameters"]["properties"].contains(key.name)) << key.name;
   }
   EXPECT_EQ(refusal({{"flow", "dziuk"}, {"$schema", "evolve.schema.json"}}), "");
+}
+
+TEST(Registry, FormulasAreReadAndCheckedWhereTheyBelong) {
+  const std::string help = evolve_config_help();
+  std::set<std::string> all;
+  for (const Entry& entry : entries())
+    for (const FormulaKey& key : entry.formulas) all.insert(key.name);
+  for (const Entry& entry : entries()) {
+    std::set<std::string> others = all;
+    for (const FormulaKey& key : entry.formulas) {
+      others.erase(key.name);
+      EXPECT_THAT(help, AllOf(HasSubstr("\"" + key.name + "\""), HasSubstr(key.example)));
+      json flow = needed_by(entry);
+      flow[key.name] = json::parse(key.example);
+      EXPECT_EQ(refusal(flow), "") << flow;
+      flow[key.name] = true;
+      EXPECT_THAT(refusal(flow), HasSubstr(key.name)) << flow;
+      if (!key.is_required) continue;
+      flow.erase(key.name);
+      EXPECT_THAT(refusal(flow), HasSubstr("needs the key " + key.name));
+    }
+    for (const std::string& other : others) {
+      json flow = needed_by(entry);
+      flow[other] = "x";
+      EXPECT_THAT(refusal(flow), HasSubstr("expected no key " + other)) << flow;
+    }
+  }
 }
 
 // `make gallery` writes the list.

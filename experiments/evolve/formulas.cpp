@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/formulas.hpp"
+
+#include <algorithm>
+#include <memory>
+
+#include "solver/error.hpp"
+#include "solver/problems/formula_data.hpp"
+
+namespace esfem {
+namespace {
+
+using nlohmann::json;
+
+std::string text_of(const json& value, const std::string& where) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number()) return value.dump();
+  throw InputError(where + ": found " + value.dump() + "; expected a formula as text, or a number");
+}
+
+const json formula_schema = {{"type", {"string", "number"}}};
+
+json list_schema(int count) {
+  return {{"type", "array"}, {"items", formula_schema}, {"minItems", count}, {"maxItems", count}};
+}
+
+bool is_initial_name(const std::string& name) {
+  return name[0] == 'u' || name[0] == 'w';
+}
+
+/// The sets of scalar fields from which an entry's runs start.
+std::vector<std::vector<std::string>> possible_initial_values(const Entry& entry) {
+  std::vector<std::vector<std::string>> sets;
+  for (const auto& names : entry.starts)
+    if (std::all_of(names.begin(), names.end(), is_initial_name)) sets.push_back(names);
+  return sets;
+}
+
+}  // namespace
+
+Formula formula_in(const JsonReader& reader, const std::string& key, const FormulaNames& names) {
+  const std::string where = reader.where() + ": " + key;
+  return {text_of(reader.value(key), where), names, where};
+}
+
+std::vector<Formula> formulas_in(const JsonReader& reader, const std::string& key,
+                                 const FormulaNames& names) {
+  std::vector<Formula> formulas;
+  for (const json& value : reader.array(key)) {
+    const std::string where = reader.where() + ": " + key + "[" + std::to_string(formulas.size()) + "]";
+    formulas.emplace_back(text_of(value, where), names, where);
+  }
+  if (formulas.empty()) throw InputError(reader.where() + ": found " + key + " = []; expected formulas");
+  return formulas;
+}
+
+FormulaNames names_of(const EvolveConfig& config) {
+  FormulaNames names = {{}, config.parameters.numbers()};
+  if (!config.formulas.contains("definitions")) return names;
+  const JsonReader reader(config.formulas.at("definitions"), config.source + ": definitions");
+  for (const auto& item : config.formulas.at("definitions").items())
+    names.definitions[item.key()] = text_of(item.value(), reader.where() + ": " + item.key());
+  return names;
+}
+
+FormulaKey initial_key(const std::vector<std::string>& names) {
+  json properties = json::object();
+  std::string example;
+  for (const std::string& name : names) {
+    properties[name] = formula_schema;
+    example += (example.empty() ? "{\"" : ", \"") + name + "\": \"1 + x*y\"";
+  }
+  return {"initial",
+          example + "}",
+          "values at t = 0, of x, y, z; instead of those above or of the mesh file",
+          {{"type", "object"}, {"additionalProperties", formula_schema}}};
+}
+
+FormulaKey velocity_key() {
+  const json level_set = {{"type", "object"},
+                          {"properties", {{"level_set", formula_schema}}},
+                          {"required", {"level_set"}},
+                          {"additionalProperties", false}};
+  return {"velocity",
+          "[\"x*t\", \"0\", \"0\"]",
+          "of the surface, of x, y, z, t; or {\"level_set\": \"d\"}: its normal velocity -d_t/|grad d|; "
+          "default: at rest",
+          {{"anyOf", {list_schema(3), level_set}}}};
+}
+
+void take_initial_values(EvolveConfig& config) {
+  FormulaNames names = names_of(config);
+  if (!config.formulas.contains("initial")) return;
+  const JsonReader reader(config.formulas.at("initial"), config.source + ": initial");
+  std::set<std::string> given;
+  for (const auto& item : config.formulas.at("initial").items()) given.insert(item.key());
+  if (const auto sets = possible_initial_values(*config.entry); !sets.empty()) {
+    std::string expected;
+    for (const auto& names : sets) {
+      const std::set<std::string> set(names.begin(), names.end());
+      if (set == given) expected.clear();
+      if (set == given) break;
+      expected += (expected.empty() ? "" : "; or ") + listed(set);
+    }
+    if (!expected.empty())
+      throw InputError(reader.where() + ": found " + listed(given) + "; expected " + expected);
+  }
+  names.variables = {"x", "y", "z"};
+  for (const std::string& name : given) {
+    Field values;
+    try {
+      values = CompiledFormulas({formula_in(reader, name, names)})(config.mesh.nodes);
+    } catch (const NumericsError& error) {
+      throw InputError(error.what());
+    }
+    auto& fields = config.fields;
+    fields.erase(std::remove_if(fields.begin(), fields.end(),
+                                [&](const NodalField& field) { return field.name == name; }),
+                 fields.end());
+    fields.push_back({name, values});
+  }
+  config.initial = given;
+}
+
+Velocity prescribed_velocity(const EvolveConfig& config, const std::string& key) {
+  if (!config.formulas.contains(key)) return {};
+  const json& given = config.formulas.at(key);
+  const FormulaNames names = names_in_space_time(names_of(config));
+  if (given.is_object()) {
+    const JsonReader reader(given, config.source + ": " + key);
+    reader.accept_only({"level_set"});
+    return formula_normal_velocity(formula_in(reader, "level_set", names));
+  }
+  const JsonReader reader(config.formulas, config.source);
+  const std::vector<Formula> components = formulas_in(reader, key, names);
+  if (components.size() != 3)
+    throw InputError(config.source +
+                     format(": %s: found %zu components; expected 3", key.c_str(), components.size()));
+  return formula_velocity(components);
+}
+
+NodalMotion prescribed_motion(const EvolveConfig& config, const UniformSteps& steps) {
+  const Field& x = config.mesh.nodes;
+  const Velocity velocity = prescribed_velocity(config);
+  if (!velocity) return [&x](double) -> const Field& { return x; };
+  const auto nodes = std::make_shared<MovingNodes>(velocity, x, steps.tau / steps.start.substeps_per_step);
+  return [nodes](double t) -> const Field& { return nodes->at(t); };
+}
+
+json exact_schema() {
+  const json field = {{"anyOf", {formula_schema, list_schema(3)}}};
+  return {{"type", "object"}, {"additionalProperties", field}, {"description", "a solution, of x, y, z, t"}};
+}
+
+json definitions_schema() {
+  return {{"type", "object"},
+          {"additionalProperties", formula_schema},
+          {"description", "names for parts of formulas"}};
+}
+
+std::string formulas_help() {
+  return "Formulas are text (or a number) with + - * / ^ and parentheses, numbers, pi, and the functions\n "
+         " " +
+         formula_functions() +
+         ".\nThey name the coordinates x, y, z, the time t, concentrations (u, or u1, u2, .. of several "
+         "species), "
+         "and every number of\n\"parameters\". step(a) is 1 for a >= 0, else 0. An error names the column.\n";
+}
+
+}  // namespace esfem

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The Cahn-Hilliard equation with a potential, a motion and data of the user's own.
+#include "experiments/evolve/mixture.hpp"
+
+#include <optional>
+
+#include "experiments/evolve/advice.hpp"
+#include "experiments/evolve/formulas.hpp"
+#include "experiments/evolve/run_flow.hpp"
+#include "experiments/evolve/start.hpp"
+#include "solver/error.hpp"
+
+namespace esfem {
+
+FormulaMixture mixture_of(const EvolveConfig& config) {
+  const JsonReader reader(config.formulas, config.source);
+  FormulaNames names = names_in_space_time(names_of(config));
+  std::vector<Formula> source;
+  if (reader.has("source")) source.push_back(formula_in(reader, "source", names));
+  names.variables.push_back("u");
+  const std::string where = config.source + ": potential";
+  return {
+      reader.has("potential") ? formula_in(reader, "potential", names) : Formula("(u^2-1)^2/4", names, where),
+      source};
+}
+
+namespace {
+
+using nlohmann::json;
+
+/// u and w by formulas of "exact"; none where one of them is missing.
+std::function<Field(const Field& x, double t)> exact_u_and_w(const EvolveConfig& config) {
+  if (!config.formulas.contains("exact")) return {};
+  const JsonReader reader(config.formulas.at("exact"), config.source + ": exact");
+  if (!reader.has("u") || !reader.has("w")) return {};
+  const FormulaNames names = names_in_space_time(names_of(config));
+  const CompiledFormulas compiled({formula_in(reader, "u", names), formula_in(reader, "w", names)});
+  return [compiled](const Field& x, double t) { return nodal_values(compiled, x, t); };
+}
+
+void check_mixture(const EvolveConfig& config, const std::string& source) {
+  mixture_of(config);
+  exact_u_and_w(config);
+  prescribed_velocity(config, "tangential");
+  if (prescribed_velocity(config) && config.adaptive)
+    throw InputError(source + ": a prescribed velocity takes equal steps; expected tau and steps");
+}
+
+void run_mixture(const Run& run) {
+  const EvolveConfig& config = run.config;
+  const double epsilon = config.parameters.number("epsilon");
+  const FormulaMixture mixture = mixture_of(config);
+  const auto exact = exact_u_and_w(config);
+  const UniformSteps steps = steps_of(run, exact != nullptr);
+  const NodalMotion motion = prescribed_motion(config, steps);
+  std::function<CahnHilliardState(double)> exact_state;
+  if (exact)
+    exact_state = [&](double t) {
+      const Field x = motion(t), u_w = exact(x, t);
+      return cahn_hilliard_state(run.space, t, x, u_w.col(0), u_w.col(1));
+    };
+  const Field& x = config.mesh.nodes;
+  const Field u = start_values(config, {"u"}), u_w = start_values(config, {"u", "w"});
+  if (u.size() == 0)
+    throw InputError(config.source + ": u has no initial values; expected \"initial\": {\"u\": a formula}");
+  const CahnHilliardState start = u_w.size() > 0
+                                      ? cahn_hilliard_state(run.space, 0, x, u_w.col(0), u_w.col(1))
+                                      : cahn_hilliard_start(run.space, mixture, epsilon, 0, x, u);
+  Field theta;
+  if (config.variant.truth("theta")) theta = cahn_hilliard_theta(run.space, mixture, epsilon, start);
+  run_flow(
+      CahnHilliard(run.space, mixture, motion, epsilon, theta, prescribed_velocity(config, "tangential")),
+      run, start, exact_state);
+}
+
+}  // namespace
+
+std::vector<Entry> mixture_entries() {
+  const json formula = {{"type", {"string", "number"}}};
+  Entry entry;
+  entry.flow = "cahn_hilliard";
+  entry.problem = "mixture";
+  entry.help =
+      "bk22 (8.3) with potential, motion, source and initial values of your own; the potential "
+      "is explicit: for the double well steps below 0.4 epsilon³";
+  entry.fields = "u, w";
+  entry.variant = {{Key::truth, "theta", false, "the correction (3.13)"}};
+  entry.parameters = {{Key::positive, "epsilon", 0.5, "width of the interface", 1}};
+  entry.takes_own_parameters = true;
+  FormulaKey tangential = velocity_key();
+  tangential.name = "tangential";
+  tangential.example = "[\"0\", \"z*t\", \"-y*t\"]";
+  tangential.help = "the part of the velocity that the nodes have, but not the material; default: none";
+  entry.formulas = {{"potential", "\"(u^2-1)^2/4\"", "F(u), double-well by default", formula},
+                    velocity_key(),
+                    tangential,
+                    {"source", "\"x*y\"", "b of bk22 (9.1), of x, y, z, t", formula},
+                    initial_key({"u"})};
+  entry.run = run_mixture;
+  entry.check = check_mixture;
+  entry.time_power = 3;
+  entry.starts = {{"u"}, {"u", "w"}};
+  entry.starts_beside_surface = true;
+  entry.cure = smaller_steps_or_even_elements;
+  return {entry};
+}
+
+}  // namespace esfem
