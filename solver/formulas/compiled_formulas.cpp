@@ -51,15 +51,6 @@ template <class T>
   }
 }
 
-/// Hashes of an expression that are the same in every process, unlike the order in which GiNaC keeps terms.
-/// `even` does not change with the sign of the expression, which GiNaC may draw out of powers.
-struct Key {
-  std::uint64_t even, signed_too;
-  bool operator<(const Key& other) const {
-    return std::tie(even, signed_too) < std::tie(other.even, other.signed_too);
-  }
-};
-
 std::uint64_t mix(std::uint64_t seed, std::uint64_t value) {
   seed ^= value + 0x9e3779b97f4a7c15 + (seed << 6) + (seed >> 2);
   seed ^= seed >> 33;
@@ -73,13 +64,12 @@ std::uint64_t bits(double value) {
   return result;
 }
 
-Key key_of(double value) {
-  return {mix(1, bits(std::abs(value))), mix(1, bits(value))};
-}
-
+/// An expression: sign times the number in a slot. Neither the slot's number nor the key, a hash, depends on
+/// where GiNaC has put signs, or on the order in which it keeps terms: both are others in each process.
 struct Value {
   int slot;
-  Key key;
+  int sign;
+  std::uint64_t key;
 };
 
 /// Translates expressions of GiNaC to operations on slots. Until all constants are known, their slots have
@@ -91,7 +81,7 @@ class Compiler {
   int compile(const FormulaTree& tree) {
     tree_ = &tree;
     known_.clear();
-    return value_of(tree.expression).slot;
+    return with_sign(value_of(tree.expression));
   }
 
   const std::vector<double>& constants() const { return constants_; }
@@ -125,15 +115,19 @@ class Compiler {
                                       : "the value is complex; expected a real one");
   }
 
-  Value constant(double value) {
+  int slot_of(double value) {
     const auto [entry, is_new] = slot_of_constant_.emplace(bits(value), -1 - int(constants_.size()));
     if (is_new) constants_.push_back(value);
-    return {entry->second, key_of(value)};
+    return entry->second;
+  }
+  Value constant(double value) {
+    const double size = std::abs(value);
+    return {slot_of(size), value < 0 ? -1 : 1, mix(1, bits(size))};
   }
 
   Value symbol(const GiNaC::ex& e) {
     for (std::size_t i = 0; i < tree_->variables.size(); ++i)
-      if (tree_->variables[i].is_equal(e)) return {int(i), {mix(2, i), mix(2, i)}};
+      if (tree_->variables[i].is_equal(e)) return {int(i), 1, mix(2, i)};
     for (const auto& [number, value] : tree_->numbers)
       if (number.is_equal(e)) return constant(value);
     throw InputError("unknown symbol");
@@ -151,7 +145,7 @@ class Compiler {
       double result = 0;
       carry_out<double>(operation, *a, *b, result);
       if (!std::isfinite(result)) throw InputError("a part without variables is not finite");
-      return constant(result).slot;
+      return slot_of(result);
     }
     const auto [entry, is_new] =
         slot_of_operation_.emplace(std::tuple(operation.code, operation.a, operation.b, operation.called),
@@ -160,52 +154,37 @@ class Compiler {
     return entry->second;
   }
   int emit(Operation::Code code, int a, int b) { return emit({code, a, b, nullptr}); }
-  int negated(int a) { return emit(Operation::negate, a, a); }
+  int with_sign(const Value& value) {
+    return value.sign > 0 ? value.slot : emit(Operation::negate, value.slot, value.slot);
+  }
 
   struct Term {
     Value value;
     double factor;
   };
 
-  static void order(std::vector<Term>& terms) {
-    std::sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) {
-      const std::uint64_t f = bits(std::abs(a.factor)), g = bits(std::abs(b.factor));
-      return std::tie(a.value.key, f) < std::tie(b.value.key, g);
-    });
-  }
-
-  /// Terms in the order of their keys. The sign of the key's even part is that of the first term.
+  /// The first term, in the order of the keys, has the sign of the sum.
   Value sum(const GiNaC::ex& e) {
     std::vector<Term> terms;
     for (const GiNaC::ex& term : e) terms.push_back(term_of(term));
-    order(terms);
-    Key key = {3, 3};
-    int result = 0;
-    bool is_first = true;
+    std::sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) {
+      return std::pair(a.value.key, a.factor) < std::pair(b.value.key, b.factor);
+    });
+    const int sign = terms[0].value.sign;
+    std::uint64_t key = 3;
+    std::optional<int> result;
     for (const Term& term : terms) {
-      const bool is_negative = term.factor < 0;
-      key.even =
-          mix(mix(key.even, term.value.key.even),
-              bits(is_negative == (terms[0].factor < 0) ? std::abs(term.factor) : -std::abs(term.factor)));
-      key.signed_too = mix(mix(key.signed_too, term.value.key.signed_too), bits(term.factor));
+      const bool is_added = term.value.sign == sign;
+      key = mix(mix(key, term.value.key), bits(is_added ? term.factor : -term.factor));
       int slot = term.value.slot;
-      if (std::abs(term.factor) != 1)
-        slot = emit(Operation::multiply, constant(std::abs(term.factor)).slot, slot);
-      if (is_first)
-        result = is_negative ? negated(slot) : slot;
-      else
-        result = emit(is_negative ? Operation::subtract : Operation::add, result, slot);
-      is_first = false;
+      if (term.factor != 1) slot = emit(Operation::multiply, slot_of(term.factor), slot);
+      result = result ? emit(is_added ? Operation::add : Operation::subtract, *result, slot) : slot;
     }
-    return {result, key};
+    return {*result, sign, key};
   }
 
-  /// A term and the number by which GiNaC multiplies it.
+  /// A term, and the positive number by which GiNaC multiplies it.
   Term term_of(const GiNaC::ex& e) {
-    if (GiNaC::is_a<GiNaC::numeric>(e)) {
-      const double value = real(e);
-      return {constant(std::abs(value)), value < 0 ? -1.0 : 1.0};
-    }
     if (!GiNaC::is_a<GiNaC::mul>(e)) return {value_of(e), 1};
     double factor = 1;
     GiNaC::ex rest = e;
@@ -214,73 +193,71 @@ class Compiler {
         factor = real(operand);
         rest = e / operand;
       }
-    return {value_of(rest), factor};
+    Value value = value_of(rest);
+    if (factor < 0) value.sign = -value.sign;
+    return {value, std::abs(factor)};
   }
 
   Value product(const GiNaC::ex& e) {
-    std::vector<Term> above, below;  // `factor` tells powers of one base apart
+    std::vector<Value> above, below;
     double number = 1;
     const auto add_factor = [&](const GiNaC::ex& factor) {
       if (GiNaC::is_a<GiNaC::numeric>(factor)) {
         number *= real(factor);
-      } else if (GiNaC::is_a<GiNaC::power>(factor)) {
-        const GiNaC::ex &base = factor.op(0), &exponent = factor.op(1);
-        if (GiNaC::is_a<GiNaC::numeric>(exponent)) {
-          const double r = real(exponent);
-          (r < 0 ? below : above).push_back({numeric_power(base, std::abs(r)), 1});
-        } else {
-          const Value b = value_of(base), c = value_of(exponent);
-          const std::uint64_t key = mix(mix(4, b.key.signed_too), c.key.signed_too);
-          above.push_back({{power(b.slot, c.slot), {key, key}}, 1});
-        }
+      } else if (!GiNaC::is_a<GiNaC::power>(factor)) {
+        above.push_back(value_of(factor));
+      } else if (const GiNaC::ex& exponent = factor.op(1); GiNaC::is_a<GiNaC::numeric>(exponent)) {
+        const double r = real(exponent);
+        (r < 0 ? below : above).push_back(numeric_power(factor.op(0), std::abs(r)));
       } else {
-        above.push_back({value_of(factor), 1});
+        const Value a = value_of(factor.op(0)), b = value_of(exponent);
+        above.push_back({power(with_sign(a), with_sign(b)), 1,
+                         mix(mix(mix(4, a.key), b.key), std::uint64_t(2 * a.sign + b.sign))});
       }
     };
     if (GiNaC::is_a<GiNaC::mul>(e))
       for (const GiNaC::ex& factor : e) add_factor(factor);
     else
       add_factor(e);
-    order(above);
-    order(below);
-    Key key = {mix(5, bits(std::abs(number))), mix(5, bits(number))};
-    const auto multiply = [&](std::vector<Term>& factors, std::optional<int> first) {
-      for (const Term& factor : factors) {
-        key = {mix(key.even, factor.value.key.even), mix(key.signed_too, factor.value.key.signed_too)};
-        first = first ? emit(Operation::multiply, *first, factor.value.slot) : factor.value.slot;
-      }
-      return first;
-    };
+    int sign = number < 0 ? -1 : 1;
     const double size = std::abs(number);
+    std::uint64_t key = mix(5, bits(size));
+    const auto multiply = [&](std::vector<Value>& factors, std::optional<int> result) {
+      std::sort(factors.begin(), factors.end(), [](const Value& a, const Value& b) { return a.key < b.key; });
+      for (const Value& factor : factors) {
+        key = mix(key, factor.key);
+        sign *= factor.sign;
+        result = result ? emit(Operation::multiply, *result, factor.slot) : factor.slot;
+      }
+      return result;
+    };
     std::optional<int> numerator;
-    if (size != 1 || above.empty()) numerator = constant(size).slot;
+    if (size != 1 || above.empty()) numerator = slot_of(size);
     numerator = multiply(above, numerator);
-    key = {mix(key.even, 6), mix(key.signed_too, 6)};
+    key = mix(key, 6);
     const std::optional<int> denominator = multiply(below, {});
-    int result = denominator ? emit(Operation::divide, *numerator, *denominator) : *numerator;
-    if (number < 0) result = negated(result);
-    return {result, key};
+    return {denominator ? emit(Operation::divide, *numerator, *denominator) : *numerator, sign, key};
   }
 
   /// base^r, r > 0: products and a square root where r is a small multiple of 1/2.
   Value numeric_power(const GiNaC::ex& base, double r) {
     const Value b = value_of(base);
-    const bool is_even = r == std::floor(r) && std::fmod(r, 2) == 0;
-    const Key key = {mix(mix(7, b.key.even), bits(r)),
-                     mix(mix(7, is_even ? b.key.even : b.key.signed_too), bits(r))};
     const double whole = std::floor(r);
-    if ((r != whole && r != whole + 0.5) || whole > 64) return {power(b.slot, constant(r).slot), key};
+    const bool is_integer = r == whole;
+    const std::uint64_t key = mix(mix(mix(7, b.key), bits(r)), is_integer || b.sign > 0 ? 1 : 0);
+    const int sign = is_integer && std::fmod(r, 2) == 1 ? b.sign : 1, a = is_integer ? b.slot : with_sign(b);
+    if ((!is_integer && r != whole + 0.5) || whole > 64) return {power(a, slot_of(r)), sign, key};
     std::optional<int> result;
-    int square = b.slot;
+    int square = a;
     for (int n = int(whole); n > 0; n /= 2) {
       if (n % 2 == 1) result = result ? emit(Operation::multiply, *result, square) : square;
       if (n > 1) square = emit(Operation::multiply, square, square);
     }
-    if (r != whole) {
-      const int root = emit(Operation::square_root, b.slot, b.slot);
+    if (!is_integer) {
+      const int root = emit(Operation::square_root, a, a);
       result = result ? emit(Operation::multiply, *result, root) : root;
     }
-    return {*result, key};
+    return {*result, sign, key};
   }
 
   int power(int base, int exponent) {
@@ -291,10 +268,13 @@ class Compiler {
   Value call_of(const GiNaC::function& call) {
     const FormulaFunction& function = formula_function(call);
     const Value a = value_of(call.op(0)), b = call.nops() > 1 ? value_of(call.op(1)) : a;
-    const std::uint64_t name =
-        std::accumulate(function.name.begin(), function.name.end(), std::uint64_t(8), mix);
-    return {emit({Operation::function, a.slot, b.slot, &function}),
-            {mix(mix(name, a.key.even), b.key.even), mix(mix(name, a.key.signed_too), b.key.signed_too)}};
+    std::uint64_t key = std::accumulate(function.name.begin(), function.name.end(), std::uint64_t(8), mix);
+    key = mix(mix(key, a.key), b.key);
+    if (function.parity != FormulaFunction::neither)
+      return {emit({Operation::function, a.slot, a.slot, &function}),
+              function.parity == FormulaFunction::odd ? a.sign : 1, key};
+    return {emit({Operation::function, with_sign(a), with_sign(b), &function}), 1,
+            mix(key, std::uint64_t(2 * a.sign + b.sign))};
   }
 
   int variables_;

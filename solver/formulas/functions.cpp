@@ -59,17 +59,28 @@ double greater(double a, double b) {
 
 const std::vector<FormulaFunction>& functions() {
   static const std::vector<FormulaFunction> list = {
-      {"sqrt", "sqrt", std::sqrt, nullptr},      {"exp", "exp", std::exp, nullptr},
-      {"log", "log", std::log, nullptr},         {"sin", "sin", std::sin, nullptr},
-      {"cos", "cos", std::cos, nullptr},         {"tan", "tan", std::tan, nullptr},
-      {"asin", "asin", std::asin, nullptr},      {"acos", "acos", std::acos, nullptr},
-      {"atan", "atan", std::atan, nullptr},      {"atan2", "atan2", nullptr, std::atan2},
-      {"sinh", "sinh", std::sinh, nullptr},      {"cosh", "cosh", std::cosh, nullptr},
-      {"tanh", "tanh", std::tanh, nullptr},      {"asinh", "asinh", std::asinh, nullptr},
-      {"acosh", "acosh", std::acosh, nullptr},   {"atanh", "atanh", std::atanh, nullptr},
-      {"abs", "formula_abs", std::abs, nullptr}, {"sign", "formula_sign", sign, nullptr},
-      {"step", "formula_step", step, nullptr},   {"min", "formula_min", nullptr, smaller},
-      {"max", "formula_max", nullptr, greater},  {"diff", "formula_diff", nullptr, nullptr}};
+      {"sqrt", "sqrt", std::sqrt, nullptr},
+      {"exp", "exp", std::exp, nullptr},
+      {"log", "log", std::log, nullptr},
+      {"sin", "sin", std::sin, nullptr, FormulaFunction::odd},
+      {"cos", "cos", std::cos, nullptr, FormulaFunction::even},
+      {"tan", "tan", std::tan, nullptr, FormulaFunction::odd},
+      {"asin", "asin", std::asin, nullptr, FormulaFunction::odd},
+      {"acos", "acos", std::acos, nullptr},
+      {"atan", "atan", std::atan, nullptr, FormulaFunction::odd},
+      {"atan2", "atan2", nullptr, std::atan2},
+      {"sinh", "sinh", std::sinh, nullptr, FormulaFunction::odd},
+      {"cosh", "cosh", std::cosh, nullptr, FormulaFunction::even},
+      {"tanh", "tanh", std::tanh, nullptr, FormulaFunction::odd},
+      {"asinh", "asinh", std::asinh, nullptr, FormulaFunction::odd},
+      {"acosh", "acosh", std::acosh, nullptr},
+      {"atanh", "atanh", std::atanh, nullptr, FormulaFunction::odd},
+      {"abs", "formula_abs", std::abs, nullptr, FormulaFunction::even},
+      {"sign", "formula_sign", sign, nullptr, FormulaFunction::odd},
+      {"step", "formula_step", step, nullptr},
+      {"min", "formula_min", nullptr, smaller},
+      {"max", "formula_max", nullptr, greater},
+      {"diff", "formula_diff", nullptr, nullptr}};
   return list;
 }
 

@@ -26,6 +26,7 @@ struct FormulaFunction {
   std::string name, of_ginac;  ///< in formulas, and for GiNaC, whose abs, sign and step are complex
   double (*of_one)(double);
   double (*of_two)(double, double);
+  enum { neither, odd, even } parity = neither;
 };
 
 /// nullptr: there is no such function.
