@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "solver/error.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/problems/formula_data.hpp"
 
 namespace esfem {
@@ -77,15 +78,17 @@ FormulaKey initial_key(const std::vector<std::string>& names) {
 }
 
 FormulaKey velocity_key() {
-  const json level_set = {{"type", "object"},
-                          {"properties", {{"level_set", formula_schema}}},
-                          {"required", {"level_set"}},
-                          {"additionalProperties", false}};
-  return {"velocity",
-          "[\"x*t\", \"0\", \"0\"]",
-          "of the surface, of x, y, z, t; or {\"level_set\": \"d\"}: its normal velocity -d_t/|grad d|; "
-          "default: at rest",
-          {{"anyOf", {list_schema(3), level_set}}}};
+  const json one_key = {{"type", "object"},
+                        {"properties", {{"level_set", formula_schema}, {"normal", formula_schema}}},
+                        {"minProperties", 1},
+                        {"maxProperties", 1},
+                        {"additionalProperties", false}};
+  return {
+      "velocity",
+      "[\"x*t\", \"0\", \"0\"]",
+      "or {\"normal\": \"V\"}, along the surface's normals, or {\"level_set\": \"d\"}: the normal velocity "
+      "-d_t/|grad d|; default: at rest",
+      {{"anyOf", {list_schema(3), one_key}}}};
 }
 
 void take_initial_values(EvolveConfig& config) {
@@ -122,14 +125,20 @@ void take_initial_values(EvolveConfig& config) {
   config.initial = given;
 }
 
-Velocity prescribed_velocity(const EvolveConfig& config, const std::string& key) {
+Velocity prescribed_velocity(const EvolveConfig& config, const SurfaceSpace* space, const std::string& key) {
   if (!config.formulas.contains(key)) return {};
   const json& given = config.formulas.at(key);
   const FormulaNames names = names_in_space_time(names_of(config));
   if (given.is_object()) {
     const JsonReader reader(given, config.source + ": " + key);
-    reader.accept_only({"level_set"});
-    return formula_normal_velocity(formula_in(reader, "level_set", names));
+    if (reader.only_key({"level_set", "normal"}) == "level_set")
+      return formula_normal_velocity(formula_in(reader, "level_set", names));
+    const CompiledFormulas speed({formula_in(reader, "normal", names)});
+    const auto surface = space ? std::make_shared<DiscreteCurvature>(*space) : nullptr;
+    return [speed, surface](double t, const Field& x, Field& v) {
+      surface->compute(x);
+      v = surface->nu().array().colwise() * nodal_values(speed, x, t).col(0).array();
+    };
   }
   const JsonReader reader(config.formulas, config.source);
   const std::vector<Formula> components = formulas_in(reader, key, names);
@@ -139,9 +148,10 @@ Velocity prescribed_velocity(const EvolveConfig& config, const std::string& key)
   return formula_velocity(components);
 }
 
-NodalMotion prescribed_motion(const EvolveConfig& config, const UniformSteps& steps) {
+NodalMotion prescribed_motion(const EvolveConfig& config, const SurfaceSpace& space,
+                              const UniformSteps& steps) {
   const Field& x = config.mesh.nodes;
-  const Velocity velocity = prescribed_velocity(config);
+  const Velocity velocity = prescribed_velocity(config, &space);
   if (!velocity) return [&x](double) -> const Field& { return x; };
   const auto nodes = std::make_shared<MovingNodes>(velocity, x, steps.tau / steps.start.substeps_per_step);
   return [nodes](double t) -> const Field& { return nodes->at(t); };

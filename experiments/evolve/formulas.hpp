@@ -32,10 +32,14 @@ FormulaKey velocity_key();
 /// place of those of the mesh file. Throws InputError for sets of names from which the flow does not start.
 void take_initial_values(EvolveConfig& config);
 
-/// The velocity that is given under a key; none: the surface is at rest.
-Velocity prescribed_velocity(const EvolveConfig& config, const std::string& key = "velocity");
-/// The positions of the nodes that have it, for a run with these steps. The configuration must outlive them.
-NodalMotion prescribed_motion(const EvolveConfig& config, const UniformSteps& steps);
+/// The velocity that is given under a key; none: the surface is at rest. The space must outlive it, and
+/// serves for the normals of one along these; without a space the formulas are only read.
+Velocity prescribed_velocity(const EvolveConfig& config, const SurfaceSpace* space,
+                             const std::string& key = "velocity");
+/// The positions of the nodes that have it, for a run with these steps. Configuration and space must outlive
+/// them.
+NodalMotion prescribed_motion(const EvolveConfig& config, const SurfaceSpace& space,
+                              const UniformSteps& steps);
 
 /// The paragraph of --help.
 std::string formulas_help();

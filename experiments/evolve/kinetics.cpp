@@ -66,7 +66,7 @@ std::function<Field(const Field& x, double t)> exact_concentrations(const Evolve
 void check_kinetics(const EvolveConfig& config, const std::string& source) {
   const Kinetics kinetics = kinetics_of(config);
   exact_concentrations(config, static_cast<int>(kinetics.f.size()));
-  const bool moves = bool(prescribed_velocity(config));
+  const bool moves = bool(prescribed_velocity(config, nullptr));
   if (moves && kinetics.g)
     throw InputError(source +
                      ": found a velocity, and g of kinetics, which drives the surface; expected one of "
@@ -109,9 +109,9 @@ void run_driven(const Run& run, const Kinetics& kinetics, Field u) {
 void run_prescribed(const Run& run, const Kinetics& kinetics, Field u) {
   const EvolveConfig& config = run.config;
   const auto exact_u = exact_concentrations(config, static_cast<int>(u.cols()));
-  const Velocity velocity = prescribed_velocity(config);
+  const Velocity velocity = prescribed_velocity(config, &run.space);
   const UniformSteps steps = steps_of(run, exact_u != nullptr);
-  const NodalMotion motion = prescribed_motion(config, steps);
+  const NodalMotion motion = prescribed_motion(config, run.space, steps);
   ReactionDiffusion flow(run.space, formula_kinetics(kinetics.f), kinetics.diffusion, motion, velocity);
   std::function<ReactionDiffusionState(double)> exact_state;
   if (exact_u) exact_state = [&](double t) { return flow.state(t, exact_u(motion(t), t)); };

@@ -41,8 +41,8 @@ std::function<Field(const Field& x, double t)> exact_u_and_w(const EvolveConfig&
 void check_mixture(const EvolveConfig& config, const std::string& source) {
   mixture_of(config);
   exact_u_and_w(config);
-  prescribed_velocity(config, "tangential");
-  if (prescribed_velocity(config) && config.adaptive)
+  prescribed_velocity(config, nullptr, "tangential");
+  if (prescribed_velocity(config, nullptr) && config.adaptive)
     throw InputError(source + ": a prescribed velocity takes equal steps; expected tau and steps");
 }
 
@@ -52,7 +52,7 @@ void run_mixture(const Run& run) {
   const FormulaMixture mixture = mixture_of(config);
   const auto exact = exact_u_and_w(config);
   const UniformSteps steps = steps_of(run, exact != nullptr);
-  const NodalMotion motion = prescribed_motion(config, steps);
+  const NodalMotion motion = prescribed_motion(config, run.space, steps);
   std::function<CahnHilliardState(double)> exact_state;
   if (exact)
     exact_state = [&](double t) {
@@ -68,9 +68,9 @@ void run_mixture(const Run& run) {
                                       : cahn_hilliard_start(run.space, mixture, epsilon, 0, x, u);
   Field theta;
   if (config.variant.truth("theta")) theta = cahn_hilliard_theta(run.space, mixture, epsilon, start);
-  run_flow(
-      CahnHilliard(run.space, mixture, motion, epsilon, theta, prescribed_velocity(config, "tangential")),
-      run, start, exact_state);
+  run_flow(CahnHilliard(run.space, mixture, motion, epsilon, theta,
+                        prescribed_velocity(config, &run.space, "tangential")),
+           run, start, exact_state);
 }
 
 }  // namespace

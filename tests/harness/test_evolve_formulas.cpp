@@ -168,6 +168,8 @@ TEST_F(EvolveFormulas, TheManufacturedSolutionOfBk22IsTheBuiltInOne) {
     EXPECT_LT(largest_difference(found.at(field), expected.at(field)), 1e-10) << field;
   const json errors = read_json(series);
   EXPECT_LT(errors.at("u_nodal_L2").back(), 0.02);
+  // GiNaC orders terms and signs by addresses, which are others in each process.
+  for (int repetition = 0; repetition < 3; ++repetition) EXPECT_EQ(end_of(formula).at("w"), found.at("w"));
 }
 
 TEST_F(EvolveFormulas, AMixtureByFormulasSeparatesAsTheBuiltInOne) {
@@ -225,8 +227,9 @@ TEST_F(EvolveFormulas, TumourGrowthByFormulasIsTheBuiltInOne) {
 
 TEST_F(EvolveFormulas, SpeciesAreDilutedOnASurfaceWithAGivenVelocity) {
   // R = 1 + t: u R² is constant, for both ways to say it.
-  for (const json& velocity :
-       {json{"x/(1+t)", "y/(1+t)", "z/(1+t)"}, json{{"level_set", "x^2+y^2+z^2-(1+t)^2"}}}) {
+  for (const json& velocity : {json{"x/(1+t)", "y/(1+t)", "z/(1+t)"},
+                               json{{"level_set", "x^2+y^2+z^2-(1+t)^2"}}, json{{"normal", "1"}}}) {
+    const bool by_discrete_normals = velocity.contains("normal");
     const json series =
         series_of(on_the_sphere({{"velocity", velocity},
                                  {"bdf", 4},
@@ -234,10 +237,10 @@ TEST_F(EvolveFormulas, SpeciesAreDilutedOnASurfaceWithAGivenVelocity) {
                                  {"kinetics", {{"f", {"0"}}, {"diffusion", {1}}}},
                                  {"initial", {{"u", "1"}}},
                                  {"exact", {{"u", "1/(1+t)^2"}, {"v", {"x/(1+t)", "y/(1+t)", "z/(1+t)"}}}}}));
-    EXPECT_LT(series.at("u_nodal_L2").back(), 1e-6) << velocity;
-    EXPECT_LT(series.at("v_nodal_L2").back(), 1e-8) << velocity;
+    EXPECT_LT(series.at("u_nodal_L2").back(), by_discrete_normals ? 1e-2 : 1e-6) << velocity;
+    EXPECT_LT(series.at("v_nodal_L2").back(), by_discrete_normals ? 1e-2 : 1e-8) << velocity;
     EXPECT_NEAR(std::sqrt(series.at("area").back().get<double>() / series.at("area")[0].get<double>()), 1.4,
-                1e-7);
+                by_discrete_normals ? 5e-3 : 1e-7);
   }
 }
 
