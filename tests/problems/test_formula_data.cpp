@@ -17,7 +17,8 @@ const std::map<std::string, double> schnakenberg = {{"a", 0.1}, {"b", 0.9}, {"ga
 
 PointwiseKinetics kinetics_of(const std::vector<std::string>& texts) {
   std::vector<Formula> f;
-  for (const std::string& text : texts) f.emplace_back(text, names_of_kinetics(2, {{}, schnakenberg}), "kinetics");
+  for (const std::string& text : texts)
+    f.emplace_back(text, names_of_kinetics(2, {{}, schnakenberg}), "kinetics");
   return formula_kinetics(f);
 }
 
