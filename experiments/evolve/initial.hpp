@@ -20,10 +20,10 @@ struct Initial {
   nlohmann::json taken_over = nlohmann::json::object();
 };
 
-/// Reads it; nothing without this key, nor when it has formulas (formulas.hpp) beside "mesh". The file is a nodal output of evolve (.json), whose history is used if
-/// it was made with the same flow, surface, variant, parameters, quadrature, tau and bdf, or any file that
-/// read_mesh takes. Throws InputError for a file that is none of these or has another degree, and for a
-/// "surface" beside it that is not that of its history.
+/// Reads it; nothing without this key, nor when it has formulas (formulas.hpp) beside "mesh". The file is a
+/// nodal output of evolve (.json), whose history is used if it was made with the same flow, surface, variant,
+/// parameters, quadrature, tau and bdf, or any file that read_mesh takes. Throws InputError for a file that
+/// is none of these or has another degree, and for a "surface" beside it that is not that of its history.
 std::optional<Initial> read_initial(const nlohmann::json& description, const std::string& source);
 
 /// Gives the configuration the times and the history. Its mesh is there already.

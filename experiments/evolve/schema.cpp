@@ -181,9 +181,8 @@ json evolve_schema() {
   schema["$schema"] = "https://json-schema.org/draft/2020-12/schema";
   schema["title"] = "Configuration of evolve";
   schema["required"] = {"flow"};
-  schema["anyOf"] = {
-      {{"required", {"mesh"}}},
-      {{"required", {"initial"}}, {"properties", {{"initial", {{"required", {"file"}}}}}}}};
+  schema["anyOf"] = {{{"required", {"mesh"}}},
+                     {{"required", {"initial"}}, {"properties", {{"initial", {{"required", {"file"}}}}}}}};
   schema["allOf"] = rules;
   return schema;
 }
