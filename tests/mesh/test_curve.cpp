@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "solver/assembly/surface_space.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/curve.hpp"
