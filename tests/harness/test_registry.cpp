@@ -137,7 +137,8 @@ TEST(Registry, FormulasAreReadAndCheckedWhereTheyBelong) {
     }
     for (const std::string& other : others) {
       json flow = needed_by(entry);
-      flow[other] = "x";
+      flow[other] = json{{"u", "x"}};
+      flow["mesh"] = {{"subdivisions", 1}};
       EXPECT_THAT(refusal(flow), HasSubstr("expected no key " + other)) << flow;
     }
   }
