@@ -68,11 +68,9 @@ FormulaMixture::FormulaMixture(const Formula& potential, const std::vector<Formu
       second_({potential.derivative("u").derivative("u")}),
       source_(source) {}
 
-Pack FormulaMixture::value(const CompiledFormulas& formula, double t, const PointData<1>& p) {
+void FormulaMixture::evaluate(const CompiledFormulas& formula, double t, const PointData<1>& p, Pack& value) {
   const Pack in[] = {p.x[0], p.x[1], p.x[2], pack(t), p.u[0]};
-  Pack out;
-  formula.evaluate(in, &out);
-  return out;
+  formula.evaluate(in, &value);
 }
 
 void FormulaMixture::b(double t, const Field& x, Field& nodal) const {
@@ -82,7 +80,9 @@ void FormulaMixture::b(double t, const Field& x, Field& nodal) const {
 double FormulaMixture::energy(const SurfaceSpace& space, double t, const Field& x, const Field& u,
                               double epsilon) const {
   const auto density = [&](const PointData<1>& p, Integrand<1, 0>& load) {
-    load.value[0] = epsilon / 2 * dot(p.grad[0], p.grad[0]) + value(potential_, t, p) / epsilon;
+    Pack potential;
+    evaluate(potential_, t, p, potential);
+    load.value[0] = epsilon / 2 * dot(p.grad[0], p.grad[0]) + potential / epsilon;
   };
   Field load;
   space.assemble_load<1, 1, 0>(x, u, density, load);

@@ -35,15 +35,23 @@ class FormulaMixture {
   FormulaMixture(const Formula& potential, const std::vector<Formula>& source);
 
   Pack f(double, const PointData<1>&) const { return Pack{}; }
-  Pack g(double t, const PointData<1>& p) const { return value(slope_, t, p); }
-  Pack dg(double t, const PointData<1>& p) const { return value(second_, t, p); }
+  Pack g(double t, const PointData<1>& p) const {
+    Pack result;
+    evaluate(slope_, t, p, result);
+    return result;
+  }
+  Pack dg(double t, const PointData<1>& p) const {
+    Pack result;
+    evaluate(second_, t, p, result);
+    return result;
+  }
   void b(double t, const Field& x, Field& nodal) const;
 
   /// Integral of epsilon/2 |grad u|² + F(u)/epsilon over Gamma_h[x].
   double energy(const SurfaceSpace& space, double t, const Field& x, const Field& u, double epsilon) const;
 
  private:
-  static Pack value(const CompiledFormulas& formula, double t, const PointData<1>& p);
+  static void evaluate(const CompiledFormulas& formula, double t, const PointData<1>& p, Pack& value);
 
   CompiledFormulas potential_, slope_, second_, source_;
 };
