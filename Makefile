@@ -147,7 +147,7 @@ test-norms:
 
 # Sanitizers for the tests of fe, mesh, assembly, linalg, time and tables; flows and the finest meshes take too long.
 sanitize:
-	@export BUILD=build-asan PRESET=asan LSAN_OPTIONS=suppressions=$(CURDIR)/tests/leaks.txt:print_suppressions=0
+	@export BUILD=build-asan PRESET=asan LSAN_OPTIONS="suppressions='$(CURDIR)/tests/leaks.txt':print_suppressions=0"
 	$(call prepare,build,build tests peers,sanitized)
 	$(call run_tests,$$BUILD,-L '^(fe|mesh|assembly|linalg|time|tables)$$' \
 	  -E 'GeneratedMesh.KeepsItsPromises.*_(50|100) |FollowsASizeFunction|ResolvesADeeplyPerturbedTorus|IsTheSameToTheBitAfterOtherCalls|FitOrders.Intervals')
