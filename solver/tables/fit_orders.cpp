@@ -10,6 +10,7 @@
 
 #include "solver/error.hpp"
 #include "solver/linalg/least_squares.hpp"
+#include "solver/tables/grouped_errors.hpp"
 #include "solver/tables/power_law.hpp"
 
 namespace esfem {
@@ -33,94 +34,8 @@ const double dip = std::log(1.5);
 /// Slopes that differ by less are the same for every purpose.
 constexpr double smallest_change = 0.1;
 
-/// The rows of one mesh or of one step size.
-struct Group {
-  double place;  ///< log h or log tau
-  std::vector<int> rows;
-};
-
-/// The rows and their groups, from coarse to fine.
-struct Data {
-  LogErrors rows;
-  double centre_h = 0, centre_tau = 0;
-  std::vector<Group> meshes, step_sizes;
-  const std::vector<Group>& groups(bool in_tau) const { return in_tau ? step_sizes : meshes; }
-};
-
-/// Replaces values by their logarithms less the mean of these, so that constants and orders are hardly
-/// correlated; returns that mean.
-double centre_logarithms(const std::vector<double>& values, std::vector<double>& logarithms) {
-  double mean = 0;
-  for (double value : values) logarithms.push_back(std::log(value));
-  for (double value : logarithms) mean += value / values.size();
-  for (double& value : logarithms) value -= mean;
-  return mean;
-}
-
-std::vector<Group> groups_of(const std::vector<double>& places) {
-  std::vector<int> order(places.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return places[a] > places[b]; });
-  std::vector<Group> groups;
-  for (int i : order) {
-    if (groups.empty() || groups.back().place - places[i] > 1e-6) groups.push_back({places[i], {}});
-    groups.back().rows.push_back(i);
-  }
-  return groups;
-}
-
-LogErrors chosen(const LogErrors& rows, const std::vector<int>& which) {
-  LogErrors result;
-  for (int i : which) {
-    result.h.push_back(rows.h[i]);
-    result.tau.push_back(rows.tau[i]);
-    result.error.push_back(rows.error[i]);
-  }
-  return result;
-}
-
-LogErrors without(const LogErrors& rows, const Group& group) {
-  std::vector<int> others;
-  for (int i = 0; i < rows.rows(); ++i)
-    if (std::find(group.rows.begin(), group.rows.end(), i) == group.rows.end()) others.push_back(i);
-  return chosen(rows, others);
-}
-
-void check_input(const std::vector<double>& h, const std::vector<double>& tau,
-                 const std::vector<double>& error) {
-  if (h.size() != error.size() || tau.size() != error.size())
-    throw InputError(format("order fit: %zu values of h, %zu of tau, %zu errors: expected as many of each",
-                            h.size(), tau.size(), error.size()));
-  for (std::size_t i = 0; i < error.size(); ++i) {
-    const bool good = h[i] > 0 && tau[i] > 0 && error[i] > 0 && std::isfinite(h[i] + tau[i] + error[i]);
-    if (!good)
-      throw InputError(
-          format("order fit, row %zu: h = %g, tau = %g, error = %g: expected positive finite numbers", i + 1,
-                 h[i], tau[i], error[i]));
-  }
-  if (error.size() < 3)
-    throw InputError(
-        format("order fit: %zu rows, at least 3 are needed (5 when h and tau both vary)", error.size()));
-}
-
-Data data_of(const std::vector<double>& h, const std::vector<double>& tau, const std::vector<double>& error) {
-  check_input(h, tau, error);
-  Data data;
-  data.centre_h = centre_logarithms(h, data.rows.h);
-  data.centre_tau = centre_logarithms(tau, data.rows.tau);
-  for (double value : error) data.rows.error.push_back(std::log(value));
-  data.meshes = groups_of(data.rows.h);
-  data.step_sizes = groups_of(data.rows.tau);
-  if (data.meshes.size() < 2 && data.step_sizes.size() < 2)
-    throw InputError("order fit: neither h nor tau varies, at least one of them has to");
-  if (data.meshes.size() > 1 && data.step_sizes.size() > 1 && data.rows.rows() < 5)
-    throw InputError(
-        format("order fit: %d rows, at least 5 are needed when h and tau both vary", data.rows.rows()));
-  return data;
-}
-
 /// The models that the variation of h and tau admits, largest first.
-std::vector<std::pair<Term, Term>> candidates(const Data& data) {
+std::vector<std::pair<Term, Term>> candidates(const GroupedErrors& data) {
   const bool h_varies = data.meshes.size() > 1, tau_varies = data.step_sizes.size() > 1;
   std::vector<std::pair<Term, Term>> models;
   if (h_varies && tau_varies) models.push_back({Term::power, Term::power});
@@ -136,7 +51,7 @@ bool is_plateau(Term term, double order) {
 }
 
 /// The number of groups that have to determine the law. Beside a plateau only the other variable's count.
-int groups_for(const Data& data, const PowerLaw& law) {
+int groups_for(const GroupedErrors& data, const PowerLaw& law) {
   const int meshes = static_cast<int>(data.meshes.size()), steps = static_cast<int>(data.step_sizes.size());
   if (law.tau == Term::none || is_plateau(law.tau, law.parameters[3])) return meshes;
   if (law.h == Term::none || is_plateau(law.h, law.parameters[1])) return steps;
@@ -164,27 +79,27 @@ double largest_share(const LogErrors& rows, const PowerLaw& law, bool in_tau) {
 }
 
 /// A plateau needs four groups, and is seen when it is half of an error: less of one is slopes that fall.
-bool has_doubtful_plateau(const Data& data, const PowerLaw& law) {
+bool has_doubtful_plateau(const GroupedErrors& data, const PowerLaw& law) {
   if (law.h == Term::none || law.tau == Term::none) return false;
   const bool in_h = is_plateau(law.h, law.parameters[1]), in_tau = is_plateau(law.tau, law.parameters[3]);
   if (!in_h && !in_tau) return false;
   return groups_for(data, law) < 4 || largest_share(data.rows, law, in_tau) < 0.5;
 }
 
-bool is_admissible(const Data& data, const PowerLaw& law) {
+bool is_admissible(const GroupedErrors& data, const PowerLaw& law) {
   if (has_doubtful_plateau(data, law)) return false;
   return is_followed(residuals(data.rows, law), static_cast<int>(law.free_parameters().size())) &&
          determines(data.rows, law);
 }
 
 /// Bayesian information criterion: a further term is penalised for its parameters.
-double criterion(const Data& data, const PowerLaw& law) {
+double criterion(const GroupedErrors& data, const PowerLaw& law) {
   const double mean_loss = std::max(law.cost / data.rows.rows(), noise_floor * noise_floor);
   const int groups = groups_for(data, law);
   return groups * std::log(mean_loss) + law.free_parameters().size() * std::log(groups);
 }
 
-std::optional<PowerLaw> best_law(const Data& data) {
+std::optional<PowerLaw> best_law(const GroupedErrors& data) {
   std::optional<PowerLaw> best;
   for (const auto& [h, tau] : candidates(data)) {
     const std::optional<PowerLaw> law = fit_power_law(data.rows, h, tau);
@@ -217,7 +132,7 @@ std::optional<double> order_of(const LogErrors& rows, PowerLaw law, bool in_tau)
 
 /// The standard error of an order by the jackknife: none when the rows without one of the groups do not
 /// determine it.
-std::optional<double> jackknife_error(const Data& data, const PowerLaw& law, bool in_tau) {
+std::optional<double> jackknife_error(const GroupedErrors& data, const PowerLaw& law, bool in_tau) {
   std::vector<double> orders;
   for (const Group& group : data.groups(in_tau)) {
     const std::optional<double> order = order_of(without(data.rows, group), law, in_tau);
@@ -238,7 +153,7 @@ double rms(const std::vector<double>& values) {
 }
 
 /// (place, log of the term) of the groups in which the term is seen: the scatter is less than a third of it.
-std::vector<std::pair<double, double>> levels(const Data& data, const PowerLaw& law, bool in_tau) {
+std::vector<std::pair<double, double>> levels(const GroupedErrors& data, const PowerLaw& law, bool in_tau) {
   const double order = law.parameters[in_tau ? 3 : 1];
   const double smallest_share = std::clamp(3 * rms(residuals(data.rows, law)), 0.01, 0.2);
   std::vector<std::pair<double, double>> seen;
@@ -294,7 +209,7 @@ Interval limit_of_slopes(const std::vector<std::pair<double, double>>& levels,
 
 /// Whether an error is much smaller than those with the next larger and smaller value of the variable, all
 /// else being equal.
-bool has_dip(const Data& data, bool in_tau) {
+bool has_dip(const GroupedErrors& data, bool in_tau) {
   for (const Group& group : data.groups(!in_tau)) {
     const LogErrors series = chosen(data.rows, group.rows);
     const std::vector<Group> points = groups_of(in_tau ? series.tau : series.h);
@@ -307,7 +222,7 @@ bool has_dip(const Data& data, bool in_tau) {
 }
 
 /// Why there is no interval, as far as the rows together show; empty: there is one.
-std::string objection(const Data& data, const PowerLaw& law) {
+std::string objection(const GroupedErrors& data, const PowerLaw& law) {
   if (has_dip(data, false) || has_dip(data, true)) return "the error changes sign";
   const double scatter = rms(residuals(data.rows, law));
   if (scatter > largest_scatter) return format("the scatter of log e is %.2f", scatter);
@@ -315,7 +230,7 @@ std::string objection(const Data& data, const PowerLaw& law) {
 }
 
 /// The order in a variable whose term is a power; none when its standard error is too large.
-std::optional<ObservedOrder> observed_order(const Data& data, const PowerLaw& law, bool in_tau) {
+std::optional<ObservedOrder> observed_order(const GroupedErrors& data, const PowerLaw& law, bool in_tau) {
   ObservedOrder observed;
   observed.order = law.parameters[in_tau ? 3 : 1];
   const std::vector<std::pair<double, double>> seen = levels(data, law, in_tau);
@@ -347,7 +262,7 @@ std::optional<ObservedOrder> observed_order(const Data& data, const PowerLaw& la
 
 OrderFit fit_orders(const std::vector<double>& h, const std::vector<double>& tau,
                     const std::vector<double>& error) {
-  const Data data = data_of(h, tau, error);
+  const GroupedErrors data = grouped_errors(h, tau, error);
   OrderFit fit;
   fit.rows_used = data.rows.rows();
   if (const std::optional<PowerLaw> law = best_law(data)) {
