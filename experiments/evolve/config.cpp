@@ -78,6 +78,11 @@ Quadrature quadrature(const json& description, const std::string& where) {
                           : symmetric_quadrature(reader.integer("degree"));
 }
 
+/// For messages: the flow, or where it has several the problem.
+std::string words_for(const Entry& entry) {
+  return entry.problem.empty() ? "flow " + entry.flow : "problem " + entry.problem;
+}
+
 /// What is given under "variant" or "parameters", where the flow has such keys.
 Settings settings(const JsonReader& reader, const std::string& key, const std::vector<Key>& known,
                   const Entry& entry) {
@@ -85,9 +90,8 @@ Settings settings(const JsonReader& reader, const std::string& key, const std::v
   const bool takes_any_number = entry.takes_own_parameters && key == "parameters";
   if (!reader.has(key)) return Settings(json::object(), known, where);
   if (known.empty() && !takes_any_number) {
-    const std::string name = entry.problem.empty() ? "flow " + entry.flow : "problem " + entry.problem;
-    throw InputError(reader.where() + ": " + name + " has no " + (key == "variant" ? "variants" : key) +
-                     "; expected no key " + key);
+    throw InputError(reader.where() + ": " + words_for(entry) + " has no " +
+                     (key == "variant" ? "variants" : key) + "; expected no key " + key);
   }
   return Settings(reader.object(key), known, where, takes_any_number);
 }
@@ -110,7 +114,7 @@ void read_formulas(const JsonReader& reader, EvolveConfig& config) {
   for (const std::string& key : known)
     if (reader.has(key)) config.formulas[key] = reader.object(key);
   const Entry& entry = *config.entry;
-  const std::string name = entry.problem.empty() ? "flow " + entry.flow : "problem " + entry.problem;
+  const std::string name = words_for(entry);
   for (const FormulaKey& key : entry.formulas) {
     known.insert(key.name);
     if (reader.has(key.name) && !names_file(reader, key.name))

@@ -113,8 +113,8 @@ std::string evolve_config_help() {
    "limits": {"curvature_size": 5,            singular: |H| times edge length above this (or 4 times its initial maximum);
               "radius_ratio": 0.01,           radius ratio of an element below this (or the square of the initial minimum; no
               "normal_length": 4},            limit if that minimum is < 0.01); |nu| or 1/|nu| of a flow's nu above this
-  "exact": {"u": "exp(-6*t)*x*y"},           a solution by formulas of x, y, z, t: the series has the errors of each step
-  "definitions": {"r2": "x^2 + y^2"},        names for parts of formulas
+   "exact": {"u": "exp(-6*t)*x*y"},           a solution by formulas of x, y, z, t: the series has the errors of each step
+   "definitions": {"r2": "x^2 + y^2"},        names for parts of formulas
    "output": {"nodal": "end.json",            default: nodal values on standard output
               "history": true,                nodal has the steps before, so that "initial" goes on bit for bit; default: true
                                               with tau and a file
