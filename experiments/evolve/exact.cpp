@@ -22,13 +22,14 @@ ExactFormulas::ExactFormulas(const EvolveConfig& config, const SurfaceSpace& spa
 }
 
 void ExactFormulas::record(double t, const Field& x, const NodalFields& fields, Series& series) {
-  if (formulas_.empty()) return;
   space_.assemble(x, M_, A_);
   for (const auto& [name, formulas] : formulas_) {
     const Field* values = find(fields, name);
-    std::string known;
-    for (const NodalField& field : fields) known += (known.empty() ? "" : ", ") + field.name;
-    if (!values) throw InputError(where_ + ": found " + name + "; expected one of " + known);
+    if (!values) {
+      std::string known;
+      for (const NodalField& field : fields) known += (known.empty() ? "" : ", ") + field.name;
+      throw InputError(where_ + ": found " + name + "; expected one of " + known);
+    }
     if (values->cols() != formulas.count())
       throw InputError(where_ + format(": %s has %td components; found %d formulas", name.c_str(),
                                        values->cols(), formulas.count()));

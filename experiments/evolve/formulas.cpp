@@ -65,12 +65,9 @@ FormulaNames names_of(const EvolveConfig& config) {
 }
 
 FormulaKey initial_key(const std::vector<std::string>& names) {
-  json properties = json::object();
   std::string example;
-  for (const std::string& name : names) {
-    properties[name] = formula_schema;
+  for (const std::string& name : names)
     example += (example.empty() ? "{\"" : ", \"") + name + "\": \"1 + x*y\"";
-  }
   return {"initial",
           example + "}",
           "values at t = 0, of x, y, z; instead of those above or of the mesh file",
