@@ -19,10 +19,8 @@ std::string text_of(const json& value, const std::string& where) {
   throw InputError(where + ": found " + value.dump() + "; expected a formula as text, or a number");
 }
 
-const json formula_schema = {{"type", {"string", "number"}}};
-
 json list_schema(int count) {
-  return {{"type", "array"}, {"items", formula_schema}, {"minItems", count}, {"maxItems", count}};
+  return {{"type", "array"}, {"items", formula_schema()}, {"minItems", count}, {"maxItems", count}};
 }
 
 bool is_initial_name(const std::string& name) {
@@ -71,12 +69,12 @@ FormulaKey initial_key(const std::vector<std::string>& names) {
   return {"initial",
           example + "}",
           "values at t = 0, of x, y, z; instead of those above or of the mesh file",
-          {{"type", "object"}, {"additionalProperties", formula_schema}}};
+          {{"type", "object"}, {"additionalProperties", formula_schema()}}};
 }
 
 FormulaKey velocity_key() {
   const json one_key = {{"type", "object"},
-                        {"properties", {{"level_set", formula_schema}, {"normal", formula_schema}}},
+                        {"properties", {{"level_set", formula_schema()}, {"normal", formula_schema()}}},
                         {"minProperties", 1},
                         {"maxProperties", 1},
                         {"additionalProperties", false}};
@@ -122,6 +120,20 @@ void take_initial_values(EvolveConfig& config) {
   config.initial = given;
 }
 
+std::function<Field(const Field& x, double t)> exact_values(const EvolveConfig& config,
+                                                            const std::vector<std::string>& names) {
+  if (!config.formulas.contains("exact")) return {};
+  const JsonReader reader(config.formulas.at("exact"), config.source + ": exact");
+  std::vector<Formula> formulas;
+  for (const std::string& name : names) {
+    if (!reader.has(name)) return {};
+    formulas.push_back(formula_in(reader, name, names_in_space_time(names_of(config))));
+  }
+  return [compiled = CompiledFormulas(formulas)](const Field& x, double t) {
+    return nodal_values(compiled, x, t);
+  };
+}
+
 Velocity prescribed_velocity(const EvolveConfig& config, const SurfaceSpace* space, const std::string& key) {
   if (!config.formulas.contains(key)) return {};
   const json& given = config.formulas.at(key);
@@ -154,14 +166,18 @@ NodalMotion prescribed_motion(const EvolveConfig& config, const SurfaceSpace& sp
   return [nodes](double t) -> const Field& { return nodes->at(t); };
 }
 
+json formula_schema() {
+  return {{"type", {"string", "number"}}};
+}
+
 json exact_schema() {
-  const json field = {{"anyOf", {formula_schema, list_schema(3)}}};
+  const json field = {{"anyOf", {formula_schema(), list_schema(3)}}};
   return {{"type", "object"}, {"additionalProperties", field}, {"description", "a solution, of x, y, z, t"}};
 }
 
 json definitions_schema() {
   return {{"type", "object"},
-          {"additionalProperties", formula_schema},
+          {"additionalProperties", formula_schema()},
           {"description", "names for parts of formulas"}};
 }
 

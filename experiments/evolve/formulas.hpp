@@ -2,6 +2,7 @@
 // Formulas of a configuration.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,8 @@ FormulaNames names_of(const EvolveConfig& config);
 
 /// "initial": values of these fields at t = 0.
 FormulaKey initial_key(const std::vector<std::string>& names);
-/// JSON Schema of "exact" and of "definitions", which any flow takes.
+/// JSON Schema of a formula, and of "exact" and "definitions", which any flow takes.
+nlohmann::json formula_schema();
 nlohmann::json exact_schema();
 nlohmann::json definitions_schema();
 /// "velocity": a prescribed motion.
@@ -31,6 +33,11 @@ FormulaKey velocity_key();
 /// Evaluates the formulas of "initial" in the nodes: they are among the configuration's nodal values, in
 /// place of those of the mesh file. Throws InputError for sets of names from which the flow does not start.
 void take_initial_values(EvolveConfig& config);
+
+/// Nodal values of the fields with these names by the formulas of "exact", a column each; none unless all of
+/// them have one.
+std::function<Field(const Field& x, double t)> exact_values(const EvolveConfig& config,
+                                                            const std::vector<std::string>& names);
 
 /// The velocity that is given under a key; none: the surface is at rest. The space must outlive it, and
 /// serves for the normals of one along these; without a space the formulas are only read.

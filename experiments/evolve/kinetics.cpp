@@ -49,23 +49,9 @@ Kinetics kinetics_of(const EvolveConfig& config) {
   return kinetics;
 }
 
-/// The exact concentrations at a time; none without a formula for each.
-std::function<Field(const Field& x, double t)> exact_concentrations(const EvolveConfig& config, int species) {
-  if (!config.formulas.contains("exact")) return {};
-  const JsonReader reader(config.formulas.at("exact"), config.source + ": exact");
-  std::vector<Formula> formulas;
-  for (const std::string& name : concentration_names(species)) {
-    if (!reader.has(name)) return {};
-    formulas.push_back(formula_in(reader, name, names_in_space_time(names_of(config))));
-  }
-  return [compiled = CompiledFormulas(formulas)](const Field& x, double t) {
-    return nodal_values(compiled, x, t);
-  };
-}
-
 void check_kinetics(const EvolveConfig& config, const std::string& source) {
   const Kinetics kinetics = kinetics_of(config);
-  exact_concentrations(config, static_cast<int>(kinetics.f.size()));
+  exact_values(config, concentration_names(static_cast<int>(kinetics.f.size())));
   const bool moves = bool(prescribed_velocity(config, nullptr));
   if (moves && kinetics.g)
     throw InputError(source +
@@ -108,7 +94,7 @@ void run_driven(const Run& run, const Kinetics& kinetics, Field u) {
 
 void run_prescribed(const Run& run, const Kinetics& kinetics, Field u) {
   const EvolveConfig& config = run.config;
-  const auto exact_u = exact_concentrations(config, static_cast<int>(u.cols()));
+  const auto exact_u = exact_values(config, concentration_names(static_cast<int>(u.cols())));
   const Velocity velocity = prescribed_velocity(config, &run.space);
   const UniformSteps steps = steps_of(run, exact_u != nullptr);
   const NodalMotion motion = prescribed_motion(config, run.space, steps);
@@ -128,7 +114,7 @@ void run_kinetics(const Run& run) {
 }
 
 FormulaKey kinetics_key() {
-  const json formula = {{"type", {"string", "number"}}};
+  const json formula = formula_schema();
   const json positive = {{"type", "number"}, {"exclusiveMinimum", 0}};
   const json properties = {{"f", {{"type", "array"}, {"items", formula}, {"minItems", 1}}},
                            {"diffusion", {{"type", "array"}, {"items", positive}, {"minItems", 1}}},

@@ -28,19 +28,9 @@ namespace {
 
 using nlohmann::json;
 
-/// u and w by formulas of "exact"; none where one of them is missing.
-std::function<Field(const Field& x, double t)> exact_u_and_w(const EvolveConfig& config) {
-  if (!config.formulas.contains("exact")) return {};
-  const JsonReader reader(config.formulas.at("exact"), config.source + ": exact");
-  if (!reader.has("u") || !reader.has("w")) return {};
-  const FormulaNames names = names_in_space_time(names_of(config));
-  const CompiledFormulas compiled({formula_in(reader, "u", names), formula_in(reader, "w", names)});
-  return [compiled](const Field& x, double t) { return nodal_values(compiled, x, t); };
-}
-
 void check_mixture(const EvolveConfig& config, const std::string& source) {
   mixture_of(config);
-  exact_u_and_w(config);
+  exact_values(config, {"u", "w"});
   prescribed_velocity(config, nullptr, "tangential");
   if (prescribed_velocity(config, nullptr) && config.adaptive)
     throw InputError(source + ": a prescribed velocity takes equal steps; expected tau and steps");
@@ -50,7 +40,7 @@ void run_mixture(const Run& run) {
   const EvolveConfig& config = run.config;
   const double epsilon = config.parameters.number("epsilon");
   const FormulaMixture mixture = mixture_of(config);
-  const auto exact = exact_u_and_w(config);
+  const auto exact = exact_values(config, {"u", "w"});
   const UniformSteps steps = steps_of(run, exact != nullptr);
   const NodalMotion motion = prescribed_motion(config, run.space, steps);
   std::function<CahnHilliardState(double)> exact_state;
@@ -76,7 +66,7 @@ void run_mixture(const Run& run) {
 }  // namespace
 
 std::vector<Entry> mixture_entries() {
-  const json formula = {{"type", {"string", "number"}}};
+  const json formula = formula_schema();
   Entry entry;
   entry.flow = "cahn_hilliard";
   entry.problem = "mixture";
