@@ -28,11 +28,11 @@ def headline(results):
     rows = []
     for key, name in [(paper.key, f"{paper.name} ({paper.key})") for paper in PAPERS] + [("beyond", "beyond the papers")]:
         statements = [statement for (section, _), group in placed.items() if section == key for statement in group]
-        published, others, checks = counts(statements)
+        published, others = counts(statements)
         pairs = [others.get(basis, (0, 0)) for basis in COUNTED_BASES]
         rows.append([name, *(str(published[column] or "–") for column in COLUMNS),
-                     *(f"{hold} of {number}" if number else "–" for hold, number in pairs), str(checks)])
-    heads = ["statements of", *COLUMNS, *COUNTED_BASES.values(), "checks"]
+                     *(f"{hold} of {number}" if number else "–" for hold, number in pairs)])
+    heads = ["statements of", *COLUMNS, *COUNTED_BASES.values()]
     kept = [i for i in range(len(heads)) if heads[i] not in ("cannot be told", "claim not met") or any(row[i] != "–" for row in rows)]
     lines = [[line[i] for i in kept] for line in [heads, ["---"] * len(heads), *rows]]
     return markdown(lines)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The reproduction report: one page with every figure, claim, verdict, table, and where they come from.
 
-Usage: python3 plots/report.py VERDICTS FIGURES OUTPUT [--reference FOLDER] [--expect tables|everything] [--without-pdf]
+Usage: python3 plots/report.py VERDICTS FIGURES OUTPUT [--reference FOLDER] [--catches FILE] [--expect tables|everything]
+       [--without-pdf]
 Reads VERDICTS (check_orders --output), the tables that it names, and the PNGs of FIGURES; writes OUTPUT/index.html, which
 needs no other file, OUTPUT/report.pdf, and all claims and orders as OUTPUT/{claims,orders}.{csv,tex}.
 """
@@ -11,94 +12,14 @@ import html
 import os
 import sys
 
+from report_claims import Links, claims_table
 from report_content import BEYOND, PAPERS
-from report_data import BEYOND_STEMS, COUNTED_BASES, SEVERITY, Statement, counts, place, read_results, verdict
+from report_data import BEYOND_STEMS, OWN, of_section, own_counts, place, read_json, read_results
 from report_export import exports
-from report_html import number, picture, table, tag, text
+from report_html import link, number, picture, tag, text
+from report_summary import counts_table, paper_summary, source
 from report_tables import fits_table, provenance_table, runs_table
 from table import TableError
-
-CLASSES = {"reproduced": "reproduced", "reproduced, but": "but", "corrected": "corrected", "not reproduced": "not",
-           "cannot be told": "untold", "claim not met": "open", "holds": "holds"}
-PRINTED_CHECKS = 80
-PUBLISHED = ("reproduced", "reproduced, but", "cannot be told", "corrected", "not reproduced", "claim not met")
-
-
-def badge(name):
-    return tag("span", name, class_="verdict " + CLASSES[name])
-
-
-def claim_rows(statement):
-    """Rows of a claims table: the statement once, its checks one by one."""
-    rows, before = [], None
-    for i, claim in enumerate(statement.claims):
-        first = i == 0
-        quote = statement.source.get("quote", "")
-        place_of = text(statement.source["place"]) + (f": “{text(quote)}”" if quote else "")
-        words = text(statement.first["statement"]) + tag("div", place_of, class_="place")
-        same_remark = not first and claim["remark"] == statement.claims[i - 1]["remark"]
-        remark = "" if same_remark or not claim["remark"] else tag("span", text(claim["remark"]), class_="remark")
-        reason = tag("span", text(claim["reason"]), class_="remark") if claim["reason"] else ""
-        last = i == len(statement.claims) - 1
-        rows.append(("" if last else "more",
-                     ["" if verdict(claim) == before else badge(verdict(claim)),
-                      (words if first else "") + remark + reason, _what(claim), text(claim["expected"]),
-                      text(claim["measured"])]))
-        before = verdict(claim)
-    return rows
-
-
-def _what(claim):
-    """Quantity, norm and labels of a check."""
-    norm = claim.get("norm", "").replace("_", " ").replace("H1 semi", "H1 seminorm")
-    what = text(claim["quantity"].replace("_", " ") if claim["kind"] == "value" else claim["quantity"])
-    if norm:
-        what += ", " + norm.replace("H1", "H<sup>1</sup>").replace("L2", "L<sup>2</sup>")
-    if "variable" in claim:
-        what = f"order in {text(claim['variable'])}: {what}"
-    labels = ", ".join(str(value) if name in ("flow", "run", "variant", "surface", "scheme") else f"{name} {value}"
-                       for name, value in claim["where"].items())
-    return what + (tag("div", text(labels.replace("_", " ")), class_="place") if labels else "")
-
-
-def claims_table(statements):
-    """The statements by themselves, then a line for each family, which opens to its members."""
-    families = {}
-    for statement in statements:
-        families.setdefault(statement.family, []).append(statement)
-    return statements_table(families.pop("", [])) + "".join(family_html(name, of) for name, of in families.items())
-
-
-def _table(statements):
-    rows = [row for statement in statements for row in claim_rows(statement)]
-    return table(["verdict", "statement", "of what", "expected", "measured"], rows, "claims") if rows else ""
-
-
-def _not_simply_holding(statements):
-    return [statement for statement in statements if statement.verdict not in ("reproduced", "holds")]
-
-
-def family_html(name, statements):
-    """How many of its members are met; in print those that do not simply hold."""
-    claims = [claim for statement in statements for claim in statement.claims]
-    first = statements[0]
-    line = " ".join([badge(Statement(first.stem, claims).verdict), text(first.families[name]["statement"]) + ":",
-                     f"{sum(claim['met'] for claim in claims)} of {len(claims)} met",
-                     tag("span", text(first.source["place"]), class_="place")])
-    return (tag("details", tag("summary", line) + tag("div", _table(statements), class_="screen"), class_="family")
-            + tag("div", _table(_not_simply_holding(statements)), class_="print"))
-
-
-def statements_table(statements):
-    """All checks on the screen; in print only those that do not simply hold."""
-    rows = [row for statement in statements for row in claim_rows(statement)]
-    if len(rows) <= PRINTED_CHECKS:
-        return _table(statements)
-    others = _table(_not_simply_holding(statements))
-    note = tag("p", f"{len(rows)} checks, all in {tag('code', 'claims.csv')}" + ("; those that do not simply hold:" if others else
-               ", and all of them hold."), class_="note print")
-    return (tag("details", tag("summary", f"{len(rows)} checks") + _table(statements), class_="screen") + note
-            + tag("div", others, class_="print"))
 
 
 def figure_html(figure, folder, missing):
@@ -124,111 +45,97 @@ def tables_html(stems, results):
     return "".join(parts)
 
 
-def see_also(number, placed, section):
+def see_also(figure_number, placed, section):
     """Statements that name this figure, but stand beside another one."""
-    ids = [tag("code", claim["id"]) for (where, key), statements in placed.items() if where == section and key != number
-           for statement in statements if number in statement.figures for claim in statement.claims[:1]]
+    ids = [link(f"{statement.stem}.{statement.first['id']}", tag("code", html.escape(statement.first["id"])))
+           for (where, key), statements in placed.items() if where == section and key != figure_number
+           for statement in statements if figure_number in statement.figures]
     return tag("p", "See also " + ", ".join(ids) + ".", class_="note") if ids else ""
 
 
-def paper_section(paper, placed, results, folder):
-    """Its figures, each with its claims; theorems and text; what this project adds; the tables."""
-    parts = [tag("h2", text(paper.title), id=paper.key),
-             tag("p", f"{text(paper.authors)}, {text(paper.journal)} ({tag('code', paper.key)}). {text(paper.about)}",
-                 class_="source")]
-    numbers = list(dict.fromkeys(figure.number for figure in paper.figures))
-    for figure_number in numbers:
+def own_runs(title, statements, links):
+    """What this project's own runs show, closed: no paper states it."""
+    if not statements:
+        return ""
+    inside = tag("summary", f"{title}: {sum(len(s.claims) for s in statements)} checks") + claims_table(statements, links)
+    return tag("details", inside, class_="own")
+
+
+def split(statements):
+    """(of a paper or independent, of this project's own runs)."""
+    return ([s for s in statements if s.source["basis"] not in OWN], [s for s in statements if s.source["basis"] in OWN])
+
+
+def paper_section(paper, placed, results, folder, links):
+    """Its figures, each with its claims; theorems and text; independent values; what own runs show; the tables."""
+    parts = [tag("h2", f"{text(paper.name)}: all claims", id=f"{paper.key}-claims"), tag("p", source(paper), class_="source")]
+    own = []
+    for figure_number in dict.fromkeys(figure.number for figure in paper.figures):
         first, *others = [figure_html(figure, folder, results.missing) for figure in paper.figures
                           if figure.number == figure_number]
-        parts += [tag("section", tag("h3", f"Figure {figure_number}") + first), *others]
-        parts.append(claims_table(placed.get((paper.key, figure_number), [])))
-        parts.append(see_also(figure_number, placed, paper.key))
-    if (paper.key, "") in placed:
-        parts.append(tag("h3", "Theorems and text") + claims_table(placed[paper.key, ""]))
+        parts += [tag("section", tag("h3", f"Figure {figure_number}", id=f"{paper.key}-{figure_number}") + first), *others]
+        theirs, ours = split(placed.get((paper.key, figure_number), []))
+        parts += [claims_table(theirs, links), see_also(figure_number, placed, paper.key)]
+        own += ours
+    theirs, ours = split(placed.get((paper.key, ""), []))
+    parts += [tag("h3", "Theorems and text") + claims_table(theirs, links)] if theirs else []
+    own += ours
     stems = [figure.stem for figure in paper.figures]
     stems += [stem for stem, entry in results.tables.items() if entry["paper"] == paper.key]
     stems = [stem for stem in dict.fromkeys(stems) if stem not in BEYOND_STEMS]
-    own = [statement for stem in stems for statement in placed.get((paper.key, stem), [])]
-    if own:
-        parts.append(tag("h3", "Independent values, and findings of this project") + claims_table(own))
+    theirs, ours = split([statement for stem in stems for statement in placed.get((paper.key, stem), [])])
+    parts += [tag("h3", "Independent values") + claims_table(theirs, links)] if theirs else []
+    parts.append(own_runs("Own runs", own + ours, links))
     return "".join(parts) + tables_html(stems, results)
 
 
-def beyond_section(placed, results, folder):
+def beyond_section(placed, results, folder, links):
     parts = [tag("h2", "Beyond the papers", id="beyond")]
     for i, figure in enumerate(BEYOND):
         parts.append(tag("section", tag("h3", text(figure.caption)) + figure_html(figure, folder, results.missing)))
         if all(figure.stem != later.stem for later in BEYOND[i + 1:]):
-            parts.append(claims_table(placed.get(("beyond", figure.stem), [])))
+            theirs, ours = split(placed.get(("beyond", figure.stem), []))
+            parts += [claims_table(theirs, links), own_runs("Own runs", ours, links)]
     return "".join(parts) + tables_html(dict.fromkeys(figure.stem for figure in BEYOND), results)
 
 
-def counts_table(placed):
-    """Statements by verdict, a row for each paper."""
-    titles = {paper.key: f"{paper.name} ({paper.key})" for paper in PAPERS} | {"beyond": "Beyond the papers"}
-    rows = []
-    for section, title in titles.items():
-        statements = [statement for (where, _), group in placed.items() if where == section for statement in group]
-        published, others, checks = counts(statements)
-        cells = [str(published[name]) if published[name] else "" for name in PUBLISHED]
-        for basis in COUNTED_BASES:
-            hold, all_of_them = others.get(basis, (0, 0))
-            cells.append(f"{hold} of {all_of_them}" if all_of_them else "")
-        rows.append([f'<a href="#{section}">{text(title)}</a>', *cells, str(checks)])
-    return table(["statements", *(badge(name) for name in PUBLISHED), *COUNTED_BASES.values(), "checks"], rows, "counts")
+NOTE = ("A statement is a sentence, a figure or a theorem that a computation can test; it may need several checks. "
+        "<i>Reproduced, but</i>: with a restriction that the remark names, or in some settings only. "
+        "<i>Cannot be told</i>: the interval of the order contains both what is stated and its opposite, or there is none. "
+        "<i>Corrected</i>: wrong as printed; the remark gives the correct version. Independent values come from other implementations. "
+        "Orders are fitted to all runs at once; brackets are 95% intervals, by the jackknife over meshes and step sizes.")
 
 
-def exceptions_table(results):
-    """Published statements that do not hold, paper by paper, worst first."""
-    chosen = [statement for statement in results.statements
-              if statement.is_published and statement.verdict in ("claim not met", "not reproduced", "corrected", "cannot be told")]
-    order = [paper.key for paper in PAPERS]
-    chosen.sort(key=lambda statement: (order.index(statement.source["paper"]) if statement.source["paper"] in order
-                                       else len(order), SEVERITY.index(statement.verdict)))
-    rows = []
-    for statement in chosen:
-        worst = min(statement.claims, key=lambda claim: SEVERITY.index(verdict(claim)))
-        why = text(worst["remark"] or worst["reason"])
-        rows.append([badge(statement.verdict), text(statement.first["statement"])
-                     + tag("div", f"{statement.source['paper']} {text(statement.source['place'])}", class_="place"), why])
-    return table(["verdict", "statement", "why"], rows, "exceptions") if rows else tag("p", "Nothing.")
-
-
-def report_html(results, folder):
+def report_html(results, folder, catches=None):
     """The page. Appends what is not there to results.missing."""
     presets = sorted({entry["parameters"].get("preset", "") for entry in results.tables.values()})
-    placed = place(results)
-    claims = [claim for statement in results.statements for claim in statement.claims]
-    body = [paper_section(paper, placed, results, folder) for paper in PAPERS]
-    body.append(beyond_section(placed, results, folder))
+    placed, links = place(results), Links(results, catches)
+    summaries = [paper_summary(paper, placed, links) for paper in PAPERS]
+    body = [paper_section(paper, placed, results, folder, links) for paper in PAPERS]
+    body.append(beyond_section(placed, results, folder, links))
     body.append(tag("h2", "Where the numbers come from", id="provenance") + provenance_table(results.tables))
-    contents = "".join(tag("li", f'<a href="#{key}">{text(title)}</a>') for key, title in
-                       [("holds", "What holds"), ("exceptions", "What is not reproduced, or corrected")]
-                       + [(paper.key, f"{paper.name} ({paper.key})") for paper in PAPERS]
+    contents = "".join(tag("li", link(key, text(title))) for key, title in
+                       [(paper.key, f"{paper.name} ({paper.key})") for paper in PAPERS]
+                       + [(f"{paper.key}-claims", f"{paper.name}: all claims") for paper in PAPERS]
                        + [("beyond", "Beyond the papers"), ("provenance", "Where the numbers come from")])
-    met = sum(claim["met"] for claim in claims)
-    untold = sum(claim["outcome"] == "cannot be told" for claim in claims)
-    lead = (f"{met} of {len(claims)} checks met, {untold} cannot be told, of {len(results.statements)} statements, in {len(results.tables)} tables"
-            f" of preset {' and '.join(presets)}."
-            + (f" {results.elsewhere} more are checked at the other preset." if results.elsewhere else ""))
+    published = [s for paper in PAPERS for s in of_section(placed, paper.key) if s.source["basis"] == "statement"]
+    hold = sum(s.verdict in ("reproduced", "reproduced, but") for s in published)
+    own, of_own = own_counts(results)
+    lead = (f"{hold} of {len(published)} statements of the papers are reproduced, {sum(s.verdict == 'reproduced' for s in published)} of "
+            f"these without a restriction, in {len(results.tables)} tables of preset {' and '.join(presets)}.")
+    beside = (f"Not counted with them: {own} of {of_own} checks of what this project’s own runs show are met."
+              + (f" {results.elsewhere} more checks belong to the other preset." if results.elsewhere else ""))
     missing = "".join(tag("li", html.escape(entry)) for entry in results.missing)
     head = [tag("h1", "Evolving surface finite elements: claims of four papers and their verdicts"),
             tag("p", f"esfem, {_date(results)}. {lead}", class_="lead"),
             tag("div", f"Not there: <ul>{missing}</ul>", class_="missing") if missing else "",
-            tag("nav", tag("ol", contents)),
-            tag("h3", "What holds", id="holds"), counts_table(placed),
-            tag("p", "A statement is a sentence, a figure or a theorem of a paper that a computation can test; it may need "
-                "several checks. <i>Reproduced, but</i>: with a restriction that the remark names, or in some settings only. "
-                "<i>Cannot be told</i>: the interval of the order contains both what is stated and its opposite, or there is none. "
-                "<i>Corrected</i>: wrong as printed, and the remark gives the correct version. Independent values come from other implementations; "
-                "findings are this project’s own. Orders are fitted to all runs at once; brackets are 95% intervals, by the jackknife over meshes and step sizes.",
-                class_="note"),
-            tag("h2", "What is not reproduced, or corrected", id="exceptions"), exceptions_table(results)]
+            tag("h3", "What holds", id="holds"), counts_table(placed), tag("p", beside + " " + NOTE, class_="note"),
+            tag("nav", tag("ol", contents))]
     with open(os.path.join(os.path.dirname(os.path.abspath(__file__)), "report.css"), encoding="utf-8") as file:
         style = file.read()
     return ('<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
             '<meta name="viewport" content="width=device-width, initial-scale=1">'
-            f"<title>esfem: reproduction report</title><style>{style}</style></head><body>" + "\n".join(head + body)
+            f"<title>esfem: reproduction report</title><style>{style}</style></head><body>" + "\n".join(head + summaries + body)
             + "</body></html>\n")
 
 
@@ -252,13 +159,16 @@ def main():
     parser.add_argument("figures", help="e.g. figures")
     parser.add_argument("output", help="e.g. report")
     parser.add_argument("--reference", default="reference", help="folder of the claims (default: reference)")
+    parser.add_argument("--catches", default="tests/claims/catches.json",
+                        help='{STEM: {CLAIM: ["broken variant", ..]}}, shown beside the claims where the file is there (default: %(default)s)')
     parser.add_argument("--expect", choices=("tables", "everything"),
                         help="exit 1 when there is no table of an experiment, or anything is missing; the report is written")
     parser.add_argument("--without-pdf", action="store_true", help="index.html only")
     arguments = parser.parse_args()
     try:
         results = read_results(arguments.verdicts, arguments.reference)
-        page = report_html(results, arguments.figures)
+        catches = read_json(arguments.catches) if os.path.exists(arguments.catches) else {}
+        page = report_html(results, arguments.figures, catches)
         os.makedirs(arguments.output, exist_ok=True)
         write(os.path.join(arguments.output, "index.html"), page.encode())
         for name, data in exports(results).items():

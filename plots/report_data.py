@@ -12,8 +12,10 @@ VERDICT_SCHEMA = "esfem-verdicts/1"
 # In the order of lists.
 SEVERITY = ("claim not met", "not reproduced", "corrected", "cannot be told", "reproduced, but", "reproduced", "holds")
 HOLDING = ("reproduced, but", "reproduced", "holds")
-# What is counted beside the papers' statements, with the heads of the columns.
-COUNTED_BASES = {"theory": "theorems and identities hold", "independent": "independent values met", "finding": "own findings met"}
+# What is counted beside the papers' statements, with the heads of the columns. What this project's own runs show
+# (finding, regression) is no statement of a paper, and is not counted with them.
+COUNTED_BASES = {"theory": "theorems and identities hold", "independent": "independent values met"}
+OWN = ("finding", "regression")
 BEYOND_STEMS = tuple(figure.stem for figure in BEYOND)
 PAPER_KEYS = tuple(paper.key for paper in PAPERS)
 
@@ -52,6 +54,11 @@ class Statement:
         """The id of the family that all of its checks are of; "" when there is none."""
         ids = {claim.get("family", "") for claim in self.claims}
         return ids.pop() if len(ids) == 1 else ""
+
+    @property
+    def worst(self):
+        """The check that the verdict is most about."""
+        return min(self.claims, key=lambda claim: SEVERITY.index(verdict(claim)))
 
     @property
     def is_published(self):
@@ -148,13 +155,50 @@ def _check_figures(statement, paper, known):
 
 
 def counts(statements):
-    """{verdict: number}, of the papers' statements; {basis: (that hold, all)}, of theory, independent values and findings;
-    and the number of their checks. The program's own numbers, of basis regression, are not counted."""
+    """{verdict: number}, of the papers' statements, and {basis: (that hold, all)}, of theory and independent values."""
     of_basis = {}
     for statement in statements:
         of_basis.setdefault(statement.source["basis"], []).append(statement)
     published = {name: sum(s.verdict == name for s in of_basis.get("statement", [])) for name in SEVERITY}
     others = {basis: (sum(s.verdict in HOLDING for s in of_basis[basis]), len(of_basis[basis]))
               for basis in COUNTED_BASES if basis in of_basis}
-    checks = sum(len(s.claims) for basis in ("statement", *others) for s in of_basis.get(basis, []))
-    return published, others, checks
+    return published, others
+
+
+def own_counts(results):
+    """(that hold, all) of the checks of this project's own findings."""
+    claims = [claim for statement in results.statements if statement.source["basis"] == "finding" for claim in statement.claims]
+    return sum(verdict(claim) in HOLDING for claim in claims), len(claims)
+
+
+def of_section(placed, section):
+    """All statements of a paper, or of "beyond"."""
+    return [statement for (where, _), group in placed.items() if where == section for statement in group]
+
+
+def figure_verdict(statements):
+    """(verdict, how many statements have which) of a figure: one that is reproduced in some respects and not in others is
+    "reproduced, but". ("", "") where the paper says nothing of it that is checked."""
+    published, _ = counts(statements)
+    found = {name: number for name, number in published.items() if number}
+    if not found:
+        return "", ""
+    tally = ", ".join(f"{number} {name}" for name, number in sorted(found.items(), key=lambda item: -SEVERITY.index(item[0])))
+    if "claim not met" in found:
+        return "claim not met", tally
+    told = {name for name in found if name != "cannot be told"} or set(found)
+    return told.pop() if len(told) == 1 else "reproduced, but", tally
+
+
+def differences(statements):
+    """[(verdict, why, statements)], most important first: what the papers state and does not simply hold. Statements with the
+    same verdict for the same reason are one entry."""
+    groups = {}
+    for statement in statements:
+        if statement.is_published and statement.verdict not in ("reproduced", "holds"):
+            # An order that cannot be told is explained by numbers, which differ from one to the other.
+            why = statement.worst["remark"] or ("" if statement.verdict == "cannot be told" else statement.worst["reason"])
+            groups.setdefault((statement.verdict, why or statement.stem), (why, []))[1].append(statement)
+    order = {name: i for i, name in enumerate(("claim not met", "not reproduced", "corrected", "reproduced, but", "cannot be told"))}
+    entries = [(name, why, group) for (name, _), (why, group) in groups.items()]
+    return sorted(entries, key=lambda entry: order[entry[0]])

@@ -13,12 +13,14 @@ SCREEN_WIDTH = 1340  # pixels of a picture at most: 17 cm at 200 dpi
 
 
 def text(words):
-    """A sentence of a claim as HTML: Greek letters by name, h^2, x_h and >= become signs."""
+    """A sentence of a claim as HTML: Greek letters by name, h^2, H1, x1, x_h and >= become signs."""
     escaped = html.escape(words, quote=False)
     escaped = escaped.replace("-&gt;", "→").replace("&gt;=", "≥").replace("&lt;=", "≤")
     escaped = re.sub(r"\b(" + "|".join(SYMBOLS) + r")(?=\b|_|\d)", lambda match: SYMBOLS[match[1]], escaped)
-    escaped = re.sub(r"\^(\([^()]*\)|-?[\w∞]+)", lambda match: f"<sup>{match[1].strip('()')}</sup>", escaped)
-    return re.sub(r"(?<=[A-Za-zͰ-Ͽ|])_([a-zA-Z0-9]{1,2})\b", r"<sub>\1</sub>", escaped)
+    escaped = re.sub(r"\b([HL])([12])\b", r"\1<sup>\2</sup>", escaped)
+    escaped = re.sub(r"\bx([123])\b", r"x<sub>\1</sub>", escaped)
+    escaped = re.sub(r"\^(\([^()]*\)|-?\d+\.\d+|-?[\w∞]+)", lambda match: f"<sup>{match[1].strip('()')}</sup>", escaped)
+    return re.sub(r"(?<=[A-Za-zͰ-Ͽ|])_([a-zA-Z0-9]{1,2})(?![a-zA-Z0-9_])", r"<sub>\1</sub>", escaped)
 
 
 def number(value):
@@ -36,14 +38,20 @@ def tag(name, content, **attributes):
     return f"<{name}{given}>{content}</{name}>"
 
 
-def table(heads, rows, class_=""):
-    """A table; heads and cells are HTML. A row may be (class, cells)."""
+def table(heads, rows, class_="", body_class=""):
+    """A table that scrolls where it is wider than the page; heads and cells are HTML. A row may be (class, cells)."""
     head = "".join(tag("th", cell) for cell in heads)
     body = []
     for row in rows:
         kind, cells = row if isinstance(row, tuple) else ("", row)
-        body.append(tag("tr", "".join(tag("td", cell) for cell in cells), class_=kind))
-    return tag("table", tag("thead", tag("tr", head)) + tag("tbody", "\n".join(body)), class_=class_)
+        body.append(tag("tr", "".join(tag("td", cell) for cell in cells), **({"class_": kind} if kind else {})))
+    made = tag("table", tag("thead", tag("tr", head)) + tag("tbody", "\n".join(body)), class_=class_)
+    return tag("div", made, class_=f"scroll {body_class}".strip())
+
+
+def link(target, words, **attributes):
+    """A link to another place of the page, or to another page; words are HTML."""
+    return tag("a", words, href=target if ":" in target else "#" + target, **attributes)
 
 
 def small_png(path, width=SCREEN_WIDTH):

@@ -15,7 +15,7 @@ from PIL import Image
 import gallery
 import report
 import style
-from report_data import Statement, grouped, place, read_results, verdict
+from report_data import Statement, figure_verdict, grouped, place, read_results, verdict
 from report_export import exports
 from report_html import small_png, text
 from table import TableError
@@ -43,6 +43,9 @@ class Words(unittest.TestCase):
                          "O(τ<sup>3</sup>) for |ν<sub>h</sub>| ≥ 1 &amp; h<sup>2</sup>")
         self.assertEqual(text("small_ellipsoid, (3.4) of number"), "small_ellipsoid, (3.4) of number")
         self.assertEqual(text("Gamma_h, order q <= 5"), "Γ<sub>h</sub>, order q ≤ 5")
+        self.assertEqual(text("h^1.5. R³ = R_0³, h^(k+1), 10^-4."),
+                         "h<sup>1.5</sup>. R³ = R<sub>0</sub>³, h<sup>k+1</sup>, 10<sup>-4</sup>.")
+        self.assertEqual(text("x1 in H1 and L2"), "x<sub>1</sub> in H<sup>1</sup> and L<sup>2</sup>")
 
     def test_verdicts(self):
         self.assertEqual(verdict(claim("a")), "reproduced")
@@ -82,14 +85,18 @@ class Page(html.parser.HTMLParser):
 
     def __init__(self, page):
         super().__init__()
-        self.open, self.loaded, self.words = [], [], []
+        self.open, self.loaded, self.words, self.ids, self.targets = [], [], [], [], []
         self.feed(page)
 
     def handle_starttag(self, tag, attrs):
         if tag not in ("meta", "img", "br", "link"):
             self.open.append(tag)
         for key, value in attrs:
-            if key == "src" and not value.startswith("data:") or key == "href" and not value.startswith("#"):
+            if key == "id":
+                self.ids.append(value)
+            if key == "href" and value.startswith("#"):
+                self.targets.append(value[1:])
+            if key == "src" and not value.startswith("data:") or key == "href" and not value.startswith(("#", "https://doi.org/")):
                 self.loaded.append(value)
 
     def handle_endtag(self, tag):
@@ -131,19 +138,22 @@ class Report(unittest.TestCase):
                  "families": {"orders": {"statement": "order q in tau", "met": 1, "claims": 2}}}
         return self.write("verdicts.json", {"schema": schema, "tables": [table]})
 
-    def page(self, *claims):
+    def page(self, *claims, catches=None):
         self.results = read_results(self.verdicts(*claims), os.path.join(self.folder, "reference"))
-        page = report.report_html(self.results, os.path.join(self.folder, "figures"))
+        page = report.report_html(self.results, os.path.join(self.folder, "figures"), catches)
         parsed = Page(page)
         self.assertEqual(parsed.open, [])
         self.assertEqual(parsed.loaded, [], "the page needs no other file")
+        self.assertEqual(len(parsed.ids), len(set(parsed.ids)), "each place has one name")
+        self.assertEqual(set(parsed.targets) - set(parsed.ids), set(), "each link leads somewhere")
         return page, " ".join(parsed.words)
 
     def test_a_page_has_figure_claims_verdicts_orders_runs_and_provenance(self):
         page, words = self.page(claim("a"), claim("b", finding="corrected", remark="a sign of (2.18)"),
                                 claim("c", "theory", "Theorem 6.1"), claim("d", "independent", "a table", "independent"))
         for expected in ("statement of a", "2.95 [2.79, 3.11]", "a sign of (2.18)", "corrected", "Theorems and text", "2.90 ± 0.10",
-                         "failed at 0.1", "0123456789ab", "2024-02-03", "4 of 4 checks met", "1 more are checked"):
+                         "failed at 0.1", "0123456789ab", "2024-02-03", "1 of 2 statements of the papers are reproduced",
+                         "1 more checks belong", "doi:10.1007/s00211-019-01074-2"):
             self.assertIn(expected, words)
         self.assertEqual(page.count("<figure"), 1)
         self.assertIn("figure kll19/fig13_2", self.results.missing)
@@ -165,12 +175,49 @@ class Report(unittest.TestCase):
         page, words = self.page(claim("a", family="orders"), claim("b", family="orders", **FAILS, reason="too low"),
                                 claim("c"))
         self.assertIn("order q in τ: 1 of 2 met", words)
-        self.assertIn("2 of 3 checks met", words)
+        self.assertIn("2 of 3 statements of the papers are reproduced", words)
         family = page[page.index('<details class="family">'):]
         family = family[:family.index("</details>")]
         for inside in ("statement of a", "statement of b", "too low", "claim not met"):
             self.assertIn(inside, family)
         self.assertNotIn("statement of c", family)
+
+    def test_remarks_link_to_the_claims_that_they_name(self):
+        page, words = self.page(claim("a", remark="see u-fine and runs, not elsewhere-checked; no claims: well-known, runs"),
+                                claim("u-fine"), claim("runs"), claim("b", remark="see not-at-this-preset"))
+        for name in ("u-fine", "runs"):
+            self.assertEqual(page.count(f'<a href="#mcf_sphere.{name}" title='), 1)
+        self.assertIn("see not-at-this-preset, checked at the other preset", words)
+
+    def test_own_runs_are_not_counted_with_the_papers(self):
+        page, words = self.page(claim("a"), claim("b", "finding", "own runs", "esfem"), claim("c", "regression", "own runs", "esfem"))
+        self.assertIn("1 of 1 statements of the papers", words)
+        self.assertIn("1 of 1 checks of what this project’s own runs show", words)
+        self.assertIn("Own runs: 2 checks", words)
+        self.assertLess(page.index("statement of a"), page.index('<details class="own">'))
+
+    def test_a_reader_sees_figures_and_differences_first(self):
+        page, _ = self.page(claim("a"), claim("b", finding="corrected", remark="a sign"), claim("c", finding="not reproduced"),
+                                claim("d", statement="other words", finding="corrected", remark="a sign"))
+        self.assertLess(page.index("what it shows, and what the runs say"), page.index('id="kll19-claims"'))
+        front = page[page.index('id="kll19-differences"'):page.index('id="nick18"')]
+        self.assertLess(front.index("statement of c"), front.index("statement of b"))
+        self.assertEqual(front.count("a sign"), 1, "statements that differ for the same reason are one entry")
+
+    def test_the_verdict_of_a_figure(self):
+        def of(*claims):
+            return figure_verdict([Statement("mcf_sphere", [one]) for one in claims])[0]
+        untold = claim("u", **CANNOT_BE_TOLD)
+        self.assertEqual(of(claim("a")), "reproduced")
+        self.assertEqual(of(claim("a"), untold), "reproduced")
+        self.assertEqual(of(untold), "cannot be told")
+        self.assertEqual(of(claim("a"), claim("b", finding="not reproduced")), "reproduced, but")
+        self.assertEqual(of(claim("a"), claim("b", **FAILS)), "claim not met")
+        self.assertEqual(of(claim("b", "finding")), "")
+
+    def test_what_a_claim_catches(self):
+        _, words = self.page(claim("a"), catches={"mcf_sphere": {"a": ["tau forgotten", "wrong sign"]}})
+        self.assertIn("catches: τ forgotten, wrong sign", words)
 
     def test_exports(self):
         self.page(claim("a", remark="50%"), claim("b", statement="|nu_h| >= 1 & ²"))
@@ -187,7 +234,7 @@ class Report(unittest.TestCase):
 
     def test_unmet_claims_are_seen_first(self):
         _, words = self.page(claim("a"), claim("b", **FAILS, reason="Convergence order not achieved"))
-        self.assertIn("1 of 2 checks met", words)
+        self.assertIn("1 of 2 statements of the papers are reproduced", words)
         self.assertLess(words.index("Convergence order not achieved"), words.index("statement of a"))
 
     def run_report(self, verdicts, *options):
@@ -232,7 +279,7 @@ class Report(unittest.TestCase):
         self.page(claim("a"), claim("b", finding="not reproduced"), claim("c", "finding", "own", "esfem"), claim("d", "theory"),
                   claim("e", "theory", **FAILS), claim("f", "regression", "own", "esfem"))
         table = gallery.headline(self.results)
-        self.assertIn("| Mean curvature flow (kll19) | 1 | – | – | 1 | 1 of 2 | – | 1 of 1 | 5 |", table)
+        self.assertIn("| Mean curvature flow (kll19) | 1 | – | – | 1 | 1 of 2 | – |", table)
         self.assertNotIn("claim not met", table)
         mark = "<!-- headline: written by make gallery -->"
         readme = f"before\n{mark}\nstale\n<!-- end of headline -->\nafter"
