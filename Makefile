@@ -36,7 +36,7 @@ sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.
 
 .PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu test-norms sanitize fuzz crash \
         crash-check consumer-check format format-check samples tables-check verdicts claims-check independent plots-check report \
-        report-check packages-check packages-check-each gallery \
+        report-check packages-check packages-check-each findings gallery \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -54,7 +54,8 @@ help:
 	@echo "make bench         ms per step and phase at growing sizes, factorisations compared with CHOLMOD and MUMPS"
 	@echo "make bench-peers   a step compared with DOLFINx and PETSc, where they are installed"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
-	@echo "make gallery       pictures in docs/ and two tables of README.md, from the published results"
+	@echo "make findings      docs/findings/ and the tables of README.md, from the published results"
+	@echo "make gallery       the same, and the pictures in docs/"
 	@echo "make clean         remove build/ and results/check/; published results and figures are kept and reused"
 	@echo "make distclean     remove results/, figures/ and report/ as well"
 	@echo
@@ -99,9 +100,15 @@ $(PYTHON) plots/report.py $(3)/verdicts.json $(2) $(3) $(4)
 endef
 report: prepare-report
 	@$(call report_of,paper,figures,report)
-gallery: report evolve
-	@$(BUILD)/bin/evolve --schema >$(BUILD)/evolve.schema.json
+# What docs/ and README.md say of the published results, and the pictures in docs/.
+gallery: findings
 	@$(PYTHON) plots/gallery.py report/verdicts.json $(BUILD)/evolve.schema.json figures README.md docs
+	@$(BIN)/evolve reference/examples/turing.json
+	@$(PYTHON) plots/own_problem.py build/turing/surfaces.pvd u1 docs/own_problem.png
+findings: report evolve
+	@$(BUILD)/bin/evolve --schema >$(BUILD)/evolve.schema.json
+	@$(PYTHON) plots/gallery.py report/verdicts.json $(BUILD)/evolve.schema.json none README.md docs
+	@$(PYTHON) plots/findings.py report/verdicts.json docs
 # The page alone: printing it takes longer, and its test prints a small one.
 report-check:
 	@$(call report_of,check,$(BUILD)/figures-check,$(BUILD)/report-check,--expect tables --without-pdf)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is kept with the sources: small pictures in docs/, and in README.md the headline table and that of evolve's flows.
+"""What is kept with the sources: small pictures in docs/, and tables in README.md and docs/flows.md, between marks.
 
 Usage: python3 plots/gallery.py VERDICTS SCHEMA FIGURES README DOCS
-Copies figures that the README shows, made small, and writes two tables of the README anew, each between its marks: the
-headline from VERDICTS (check_orders --output), the flows from SCHEMA (evolve --schema).
+Copies figures, made small, and writes anew: in README the headline, from VERDICTS (check_orders --output), the table of figures,
+from the tables that VERDICTS names, and the lines of a program, from tests/consumer/shrink.cpp; in DOCS/flows.md the flows, from
+SCHEMA (evolve --schema). FIGURES may be "none": no pictures.
 """
 import json
 import os
@@ -38,6 +39,60 @@ def headline(results):
     return markdown(lines)
 
 
+def figures_table(results):
+    """Which executable draws which figures, from which claims, and the seconds of its runs together."""
+    numbers = {}
+    for paper in PAPERS:
+        for figure in paper.figures:
+            numbers.setdefault(figure.stem, {}).setdefault(paper.key, {})[figure.number] = None
+    lines = [["figures", "executable", "claims", "all its runs"], ["---"] * 4]
+    others = [stem for stem in results.tables if stem not in numbers]
+    for stem, of_papers in numbers.items():
+        if stem in results.tables:
+            names = "; ".join(f"{key} {ranges(list(figures))}" for key, figures in of_papers.items())
+            lines.append([names, f"`{stem}`", f"[{stem}.json](reference/{stem}.json)", duration(seconds(results, [stem]))])
+    lines.append(["[beyond the papers](docs/findings/beyond.md)", ", ".join(f"`{stem}`" for stem in others), "[reference/](reference/README.md)",
+                  duration(seconds(results, others))])
+    return markdown(lines)
+
+
+def seconds(results, stems):
+    return sum(row.get("seconds", 0) for stem in stems for row in results.tables[stem]["rows"])
+
+
+def duration(number):
+    """Two figures at most: these are the times of one machine."""
+    return f"{number:.2g} s" if number < 100 else f"{number / 60:.0f} min"
+
+
+def ranges(numbers):
+    """13.1, 13.2, 13.3 as 13.1–13.3; two numbers as 6, 7."""
+    return ", ".join(numbers) if len(numbers) < 3 else f"{numbers[0]}–{numbers[-1]}"
+
+
+def program(source, written):
+    """The block of README with lines of a program. Raises TableError when one of them is not there, in this order."""
+    lines = [line.strip() for line in source.splitlines()]
+    for line in written:
+        if line.strip() not in lines:
+            raise TableError(f"tests/consumer/shrink.cpp has no line {line.strip()!r} behind those before")
+        lines = lines[lines.index(line.strip()) + 1:]
+    return "\n".join(["```cpp", *written, "```"])
+
+
+PROGRAM = """const esfem::Mesh mesh = esfem::read_mesh(mesh_file).mesh;
+const esfem::SurfaceSpace space(mesh);
+esfem::MeanCurvatureFlow::State state = esfem::discrete_mean_curvature_state(space, mesh.nodes);
+esfem::MeanCurvatureFlow flow(space, {});
+esfem::UniformSteps steps;
+steps.order = 3;
+steps.tau = tau;
+steps.steps = 20;
+esfem::integrate(flow, steps, {state}, [&](int, const esfem::MeanCurvatureFlow::State& now) {
+  std::printf("%-10.4g %-22.16g %.16g\\n", now.t, space.area(now.x), space.volume(now.x));
+});""".splitlines()
+
+
 def flows(schema):
     """The flows of evolve and their problems with a line of help each, as a table in Markdown."""
     lines = [["flow", "problem", ""], ["---"] * 3]
@@ -52,10 +107,10 @@ def markdown(lines):
 
 
 def with_table(readme, name, table):
-    """The README's text with the table between its marks. Raises TableError when these are not there, once each."""
+    """A page's text with the table between its marks. Raises TableError when these are not there, once each."""
     marks = (f"<!-- {name}: written by make gallery -->", f"<!-- end of {name} -->")
     if any(readme.count(mark) != 1 for mark in marks):
-        raise TableError(f"README: expected once each: {' and '.join(marks)}")
+        raise TableError(f"expected once each: {' and '.join(marks)}")
     return re.sub(f"{marks[0]}.*{marks[1]}", lambda _: f"{marks[0]}\n{table}\n{marks[1]}", readme, flags=re.DOTALL)
 
 
@@ -64,17 +119,30 @@ def main():
         sys.exit(__doc__.strip())
     verdicts, schema, figures, readme, docs = sys.argv[1:]
     try:
-        with open(readme, encoding="utf-8") as file:
-            text = with_table(file.read(), "headline", headline(read_results(verdicts, "reference")))
+        results = read_results(verdicts, "reference")
+        with open("tests/consumer/shrink.cpp", encoding="utf-8") as file:
+            lines = program(file.read(), PROGRAM)
+        rewrite(readme, {"headline": headline(results), "figures": figures_table(results), "program": lines})
         with open(schema, encoding="utf-8") as file:
-            text = with_table(text, "flows", flows(json.load(file)))
-        for name in PICTURES:
+            rewrite(os.path.join(docs, "flows.md"), {"flows": flows(json.load(file))})
+        for name in PICTURES if figures != "none" else ():
             with open(os.path.join(docs, os.path.basename(name) + ".png"), "wb") as file:
                 file.write(small_png(os.path.join(figures, name + ".png"), WIDTH))
-        with open(readme, "w", encoding="utf-8") as file:
-            file.write(text)
     except (TableError, OSError) as error:
         sys.exit(f"{os.path.basename(sys.argv[0])}: {error}")
+
+
+def rewrite(path, tables):
+    """Writes the tables between their marks. Raises TableError."""
+    with open(path, encoding="utf-8") as file:
+        page = file.read()
+    try:
+        for name, table in tables.items():
+            page = with_table(page, name, table)
+    except TableError as error:
+        raise TableError(f"{path}: {error}") from error
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(page)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The description of a flow for `evolve`. A flow, or a problem of one, is an entry; the parser, --help,
-// --schema, the dispatch and the list in the README follow from it.
+// --schema, the dispatch and the list in docs/flows.md follow from it.
 #pragma once
 
 #include <functional>

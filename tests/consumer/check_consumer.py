@@ -8,7 +8,7 @@ own) against the installed copy, builds it with -O2 alone, and runs it:
 * integrate: integrands of one's own, with and without inlining.
 
 The same project is configured with the library's source tree in it, too, to see that this forces no flags on it either.
-docs/flows.md must show shrink.cpp as it is.
+docs/library.md must show shrink.cpp as it is.
 
     tests/consumer/check_consumer.py [--build DIR]
 
@@ -143,9 +143,9 @@ def run_evolve(build, folder):
 
 
 def check_document():
-    text = (ROOT / "docs/flows.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/library.md").read_text(encoding="utf-8")
     source = (CONSUMER / "shrink.cpp").read_text(encoding="utf-8").split("\n", 1)[1]
-    expect(f"```cpp\n{source}```\n" in text, "docs/flows.md does not show tests/consumer/shrink.cpp as it is: copy it there")
+    expect(f"```cpp\n{source}```\n" in text, "docs/library.md does not show tests/consumer/shrink.cpp as it is: copy it there")
 
 
 def check_consumer(build):

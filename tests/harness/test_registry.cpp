@@ -145,8 +145,8 @@ TEST(Registry, FormulasAreReadAndCheckedWhereTheyBelong) {
 }
 
 // `make gallery` writes the list.
-TEST(Registry, TheReadmeListsFlowsAndProblems) {
-  std::ifstream file(std::string(ESFEM_SOURCE_DIR) + "/README.md");
+TEST(Registry, TheDocumentationListsFlowsAndProblems) {
+  std::ifstream file(std::string(ESFEM_SOURCE_DIR) + "/docs/flows.md");
   std::stringstream text;
   text << file.rdbuf();
   for (const Entry& entry : entries()) {

@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The pages in docs/findings: what the runs found, with all numbers from the tables and verdicts.
+
+Usage: python3 plots/findings.py VERDICTS DOCS      writes DOCS/findings/*.md
+       python3 plots/findings.py --check DOCS       exit 1 where a page was made from other claims or another text
+
+A page is made of plots/findings/NAME.md, in which {{..}} stand for numbers, and, for a paper, of its figures and claims:
+  {{STEM CLAIM}}         what was measured for a claim, an order with its interval, as "2.82 ± 0.19"
+  {{STEM CLAIM .4f}}     the same in a format of Python's, or its order alone ("order")
+  {{order STEM QUANTITY NORM VARIABLE LABEL=VALUE ..}}    a fitted order of the table
+  {{rows STEM}}          how many runs the table has
+A number that is not there is an error. The head of a page says which claims, text and tables it is made from.
+"""
+import glob
+import hashlib
+import os
+import re
+import sys
+
+from report_content import PAPERS
+from report_data import BEYOND_STEMS, OWN, differences, figure_verdict, of_section, place, read_results, verdict
+from report_html import text
+from report_summary import DOI
+from report_tables import order_words
+from table import TableError
+
+FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "findings")
+REFERENCE = "reference"
+MADE = "<!-- written by `make findings`; its text is plots/findings/{}.md -->"
+SHOWN = 4
+
+
+def digest(path):
+    with open(path, "rb") as file:
+        return hashlib.sha256(file.read()).hexdigest()[:12]
+
+
+def stems_of(name):
+    """The experiments whose claims a page has: those of its paper, all others on "beyond", on other pages those it names."""
+    papers = {paper.key: {figure.stem for figure in paper.figures} for paper in PAPERS}
+    stems = sorted(os.path.splitext(os.path.basename(path))[0] for path in glob.glob(f"{REFERENCE}/*.json"))
+    if name in papers:
+        return [stem for stem in stems if stem in papers[name] or stem in BEYOND_STEMS]
+    if name == "beyond":
+        return [stem for stem in stems if not any(stem in of for of in papers.values())]
+    with open(f"{FOLDER}/{name}.md", encoding="utf-8") as file:
+        words = file.read()
+    return [stem for stem in stems if stem in words]
+
+
+def made_from(name):
+    """The line of a page that says what it is made from, apart from the tables."""
+    inputs = [f"{FOLDER}/{name}.md"] + [f"{REFERENCE}/{stem}.json" for stem in stems_of(name)]
+    return "<!-- made from " + ", ".join(f"{os.path.basename(path)} {digest(path)}" for path in inputs) + " -->"
+
+
+class Numbers:
+    """What {{..}} stand for."""
+
+    def __init__(self, results):
+        self.tables = results.tables
+        self.claims = {(s.stem, claim["id"]): claim for s in results.statements for claim in s.claims}
+
+    def filled(self, words, where):
+        return re.sub(r"\{\{([^}]*)\}\}", lambda match: self._number(match[1].split(), where), words)
+
+    def _number(self, words, where):
+        if words[0] == "order":
+            return self._order(*words[1:5], dict(word.split("=", 1) for word in words[5:]), where)
+        if words[0] == "rows":
+            return str(len(self.tables[words[1]]["rows"]))
+        claim = self.claims.get(tuple(words[:2]))
+        if not claim:
+            raise TableError(f"{where}: there is no claim {' '.join(words[:2])}")
+        measured = claim["measured"]
+        if len(words) == 2:
+            interval = re.fullmatch(r"(\S+) \[(\S+), (\S+)\]", measured)
+            if interval:
+                order, low, high = map(float, interval.groups())
+                return f"{order:.2f} ± {(high - low) / 2:.2f}"
+            changes = re.fullmatch(r"(\S+), (.*)", measured)
+            return arrow(f"{changes[1]} ({changes[2]})" if changes else measured.replace("-", "none") if measured == "-" else measured)
+        number = float(re.match(r"[-+.\de]+", measured)[0])
+        return f"{number:.2f}" if words[2] == "order" else format(number, words[2]).replace("-", "−", 1)
+
+    def _order(self, stem, quantity, norm, variable, labels, where):
+        for fit in self.tables[stem].get("fits", []):
+            has = {name: str(value) for name, value in fit.get("labels", {}).items()}
+            if (fit["quantity"], fit["norm"], fit["variable"]) == (quantity, norm, variable) and labels.items() <= has.items():
+                return arrow(order_words(fit))
+        raise TableError(f"{where}: {stem} has no fit of {quantity} {norm} {variable} {labels}")
+
+
+def arrow(words):
+    """Slopes that still change, from coarse to fine: "2.22 (falling, 2.4 → 2.1)" is "2.4 → 2.1"."""
+    changing = re.search(r"(?:rising|falling), (\S+) (?:->|→|-&gt;) (-?[\d.]+)", words)
+    return f"{changing[1]} → {changing[2]}" if changing else words
+
+
+def cell(words):
+    """A sentence of a claim for a table in Markdown."""
+    return text(words).replace("|", "&#124;").replace("*", "&#42;")
+
+
+def table(heads, rows):
+    lines = [heads, ["---"] * len(heads), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+
+
+def check(claim):
+    """What was measured, and the remark, of one check."""
+    remark = f": {cell(claim['remark'])}" if claim["remark"] else ""
+    return f"`{claim['id']}` {cell(claim['measured'])}{remark}"
+
+
+def statement_row(statement):
+    # A remark that several checks share is written once.
+    parts, before = [], None
+    for claim in statement.claims:
+        parts.append(check(claim if claim["remark"] != before else claim | {"remark": ""}))
+        before = claim["remark"]
+    return [statement.verdict, f"{cell(statement.first['statement'])} ({cell(statement.source['place'])})", "<br>".join(parts)]
+
+
+def statements_table(statements):
+    """A row for each statement, and a line for each family."""
+    single = [statement for statement in statements if not statement.family]
+    parts = [table(["verdict", "statement", "measured"], map(statement_row, single))] if single else []
+    families = {}
+    for statement in statements:
+        if statement.family:
+            families.setdefault((statement.stem, statement.family), []).append(statement)
+    lines = []
+    for (stem, name), group in families.items():
+        claims = [claim for statement in group for claim in statement.claims]
+        met = sum(claim["met"] for claim in claims)
+        untold = sum(verdict(claim) == "cannot be told" for claim in claims)
+        lines.append(f"- {text(group[0].families[name]['statement'])} (`{stem}`): {met} of {len(claims)} met"
+                     + (f", {untold} cannot be told" if untold else ""))
+    return "\n\n".join(parts + (["\n".join(lines)] if lines else []))
+
+
+def figures_table(paper, placed):
+    rows = {}
+    for figure in paper.figures:
+        name, tally = figure_verdict(placed.get((paper.key, figure.number), []))
+        rows.setdefault(figure.number, [figure.number, f"{cell(figure.caption)} {cell(figure.found)}", f"`{figure.stem}`",
+                                        f"{name or 'no statement'}{f' ({tally})' if tally and tally[2:] != name else ''}"])
+    return table(["figure", "what it shows, and what the runs say", "executable", "verdict"], rows.values())
+
+
+def differences_table(statements):
+    rows = []
+    for name, why, group in differences(statements):
+        words = "<br>".join(f"{cell(s.first['statement'])} ({cell(s.source['place'])})" for s in group[:SHOWN])
+        words += f"<br>and {len(group) - SHOWN} more" if len(group) > SHOWN else ""
+        rows.append([name, words, cell(why or group[0].worst["reason"])])
+    return table(["verdict", "statement", "why"], rows) if rows else "Nothing."
+
+
+def provenance(results, stems):
+    """The version of the tables that a page is made from."""
+    origins = [results.tables[stem].get("provenance", {}) for stem in stems if stem in results.tables]
+    def values(key, short=None):
+        found = [value for origin in origins for value in (origin.get(key) if isinstance(origin.get(key), list) else [origin.get(key)])]
+        return ", ".join(sorted({str(value)[:short] for value in found if value}))
+    return (f"*Tables of {values('date', 10)}, version {values('version')}, commits {values('git', 10)}, {values('compiler')}, "
+            f"{values('cpu')}. The report has all checks and all orders: `make report`.*")
+
+
+def paper_page(paper, placed, results, story):
+    statements = of_section(placed, paper.key)
+    theirs = [s for s in statements if s.source["basis"] not in OWN]
+    own = [s for s in statements if s.source["basis"] == "finding"]
+    doi = f", [doi:{paper.doi}]({DOI}{paper.doi})" if paper.doi else ""
+    stems = {s.stem for s in statements}
+    return [f"# {paper.name} ({paper.key})", f"{paper.authors}: {paper.title}. {paper.journal}{doi}. {cell(paper.about)}",
+            provenance(results, sorted(stems)), "## Figures", figures_table(paper, placed), "## What differs", differences_table(statements),
+            story, "## All statements", statements_table(theirs), "## What the project's own runs show", statements_table(own)]
+
+
+def beyond_page(placed, results, story):
+    parts = ["# Beyond the papers", provenance(results, [stem for stem in BEYOND_STEMS if stem in results.tables]), story]
+    for stem in dict.fromkeys(BEYOND_STEMS):
+        statements = [s for s in placed.get(("beyond", stem), []) if s.source["basis"] != "regression"]
+        if statements:
+            parts += [f"## Claims of `{stem}`", statements_table(statements)]
+    return parts
+
+
+def page(name, placed, results):
+    """The text of a page."""
+    with open(f"{FOLDER}/{name}.md", encoding="utf-8") as file:
+        story = Numbers(results).filled(file.read().strip(), f"plots/findings/{name}.md")
+    papers = {paper.key: paper for paper in PAPERS}
+    if name in papers:
+        parts = paper_page(papers[name], placed, results, story)
+    else:
+        parts = beyond_page(placed, results, story) if name == "beyond" else [story]
+    return "\n\n".join([MADE.format(name) + "\n" + made_from(name), *parts]) + "\n"
+
+
+def names():
+    return sorted(os.path.splitext(os.path.basename(path))[0] for path in glob.glob(f"{FOLDER}/*.md"))
+
+
+def outdated(docs):
+    """What is wrong with the pages that are there, a line each."""
+    wrong = []
+    for name in names():
+        path = f"{docs}/findings/{name}.md"
+        try:
+            with open(path, encoding="utf-8") as file:
+                head = file.read().split("\n\n")[0]
+        except OSError as error:
+            wrong.append(f"{path}: {error.strerror}")
+            continue
+        expected = made_from(name)
+        if expected not in head:
+            changed = sorted(set(expected.split(", ")) - set(head.split(", ")))
+            wrong.append(f"{path} was made from other inputs: {'; '.join(changed)}. With the published tables: make findings")
+    return wrong
+
+
+def write_all(verdicts, docs):
+    results = read_results(verdicts, REFERENCE)
+    placed = place(results)
+    os.makedirs(f"{docs}/findings", exist_ok=True)
+    for name in names():
+        made = page(name, placed, results)
+        with open(f"{docs}/findings/{name}.md", "w", encoding="utf-8") as file:
+            file.write(made)
+
+
+def main():
+    if len(sys.argv) != 3:
+        sys.exit(__doc__.strip())
+    try:
+        if sys.argv[1] == "--check":
+            wrong = outdated(sys.argv[2])
+            if wrong:
+                sys.exit("\n".join(wrong))
+        else:
+            write_all(*sys.argv[1:])
+    except (TableError, OSError) as error:
+        sys.exit(f"{os.path.basename(sys.argv[0])}: {error}")
+
+
+if __name__ == "__main__":
+    main()
