@@ -36,7 +36,7 @@ sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.
 
 .PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu test-norms sanitize fuzz crash \
         crash-check consumer-check format format-check samples tables-check verdicts claims-check independent plots-check report \
-        report-check packages-check packages-check-each findings gallery \
+        report-check packages-check packages-check-each findings gallery docs site site-check \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -56,6 +56,7 @@ help:
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
 	@echo "make findings      docs/findings/ and the tables of README.md, from the published results"
 	@echo "make gallery       the same, and the pictures in docs/"
+	@echo "make docs | site   API pages of the library (doxygen); all pages for a browser in site/ (python3-markdown)"
 	@echo "make clean         remove build/ and results/check/; published results and figures are kept and reused"
 	@echo "make distclean     remove results/, figures/ and report/ as well"
 	@echo
@@ -105,6 +106,18 @@ gallery: findings
 	@$(PYTHON) plots/gallery.py report/verdicts.json $(BUILD)/evolve.schema.json figures README.md docs
 	@$(BIN)/evolve reference/examples/turing.json
 	@$(PYTHON) plots/own_problem.py build/turing/surfaces.pvd u1 docs/own_problem.png
+# The API from the headers' comments, and all pages for a browser. Their tools are in no list: nothing else needs them.
+docs:
+	@if ! command -v doxygen >/dev/null; then echo "missing: doxygen; install it (Debian's name) and try again" >&2; exit 1; fi
+	mkdir -p $(BUILD)/api
+	ESFEM_VERSION=$$(sed -n 's/^project(esfem VERSION \([0-9.]*\).*/\1/p' CMakeLists.txt) ESFEM_API=$(BUILD)/api doxygen docs/Doxyfile
+	echo "docs: $(BUILD)/api/html/index.html"
+site:
+	@$(PYTHON) plots/site_pages.py site --report report --figures figures --api $(BUILD)/api/html
+# Every page in a browser, where Chromium is installed: nothing on its console, nothing wider than the page.
+site-check: site
+	@$(PYTHON) -m unittest discover -q -s tests/site
+	$(PYTHON) tests/site/check_site.py site $(BUILD)/site-check
 findings: report evolve
 	@$(BUILD)/bin/evolve --schema >$(BUILD)/evolve.schema.json
 	@$(PYTHON) plots/gallery.py report/verdicts.json $(BUILD)/evolve.schema.json none README.md docs
@@ -241,7 +254,7 @@ bench-peers:
 clean:
 	rm -rf $(BUILD) results/check
 distclean: clean
-	rm -rf results figures report
+	rm -rf results figures report site
 
 # run(preset, stems, goal): lists the cells of the stems, then makes the goal of cells.mk. The cells
 # depend on `.executable`, the checksum of their executable: a build that leaves it unchanged outdates nothing.

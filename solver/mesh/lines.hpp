@@ -8,8 +8,8 @@
 namespace esfem {
 
 /// The lines of a text file that are not blank, split into words, with their numbers. Words are used up to
-/// their end: `7.7` is no integer, `0.03D+01` no coordinate. Lines end as the first one does: with \n, \r\n
-/// or \r. A byte order mark (UTF-8) is skipped.
+/// their end: `7.7` is no integer, `0.03D+01` no coordinate. Lines end as the first one does: with LF, CR LF
+/// or CR. A byte order mark (UTF-8) is skipped.
 ///
 /// Two ways to read: line by line (`next`, then words by their index), or word by word (`take`, which goes to
 /// the next line when the words of the current one are used up).

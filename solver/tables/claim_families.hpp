@@ -14,7 +14,7 @@ struct ClaimFamily {
   std::vector<nlohmann::json> members;  ///< each a claim by itself
 };
 
-/// Writes out an entry of reference/<stem>.json that has
+/// Writes out an entry of reference/STEM.json that has
 ///   "for": {"degree": [1, 2, 3], "bdf": 4}, names with their values: a member for each combination; or a
 ///   list of
 ///     such objects with the same names, whose combinations are put together;

@@ -55,7 +55,7 @@ struct Claim {
   std::string finding, remark;
 };
 
-/// Contents of reference/<stem>.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
+/// Contents of reference/STEM.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
 /// {"paper", "place", "basis", "quote" (of a statement)}, "kind": "order" | "size" | "value", "quantity",
 /// "norm" (not of a value), "where": {"flow": "dziuk", "bdf": 4}, "rows": {"tau", "tau_min", "tau_max", "h",
 /// "h_min", "h_max", "from_step"}, "presets": [..], "figures": ["13.1"], ...}]}; order: "variable",

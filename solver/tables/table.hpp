@@ -70,7 +70,7 @@ struct Fit {
   nlohmann::json labels = nlohmann::json::object();  ///< of the rows; none when the table has but one variant
 };
 
-/// Schema "esfem-table/1" of results/<preset>/<stem>.json. A cell file is a table with one row.
+/// Schema "esfem-table/1" of results/PRESET/STEM.json. A cell file is a table with one row.
 struct Table {
   std::string experiment, paper;
   nlohmann::json parameters = nlohmann::json::object(), provenance = nlohmann::json::object();
