@@ -20,7 +20,7 @@ import sys
 from report_content import PAPERS
 from report_data import BEYOND_STEMS, OWN, differences, figure_verdict, of_section, place, read_results, verdict
 from report_html import text
-from report_summary import DOI
+from report_summary import DOI, UNTOLD
 from report_tables import order_words
 from table import TableError
 
@@ -154,7 +154,7 @@ def differences_table(statements):
     for name, why, group in differences(statements):
         words = "<br>".join(f"{cell(s.first['statement'])} ({cell(s.source['place'])})" for s in group[:SHOWN])
         words += f"<br>and {len(group) - SHOWN} more" if len(group) > SHOWN else ""
-        rows.append([name, words, cell(why or group[0].worst["reason"])])
+        rows.append([name, words, cell(why or (UNTOLD if len(group) > 1 else group[0].worst["reason"]))])
     return table(["verdict", "statement", "why"], rows) if rows else "Nothing."
 
 

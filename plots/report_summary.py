@@ -10,6 +10,7 @@ from report_html import link, table, tag, text
 PUBLISHED = ("reproduced", "reproduced, but", "cannot be told", "corrected", "not reproduced", "claim not met")
 DOI = "https://doi.org/"
 SHOWN = 4  # statements that one entry lists by name
+UNTOLD = "the interval of the order contains the bound, or there is none"
 
 
 def source(paper):
@@ -56,10 +57,12 @@ def differences_table(statements, links):
     for name, why, group in differences(statements):
         shown = [link(anchor(s.stem, s.worst["id"]), text(s.first["statement"]))
                  + tag("div", text(s.source["place"]), class_="place") for s in group[:SHOWN]]
-        more = ", ".join(link(anchor(s.stem, s.worst["id"]), tag("code", html.escape(s.worst["id"]))) for s in group[SHOWN:])
         words = "".join(tag("div", entry) for entry in shown)
-        words += tag("div", f"and {len(group) - SHOWN} more: {more}", class_="place") if more else ""
-        rows.append([badge(name), words, links.remark(group[0].stem, why) or text(group[0].worst["reason"])])
+        if len(group) > SHOWN:
+            more = ", ".join(link(anchor(s.stem, s.worst["id"]), tag("code", html.escape(s.worst["id"]))) for s in group[SHOWN:])
+            count = f"and {len(group) - SHOWN} more"
+            words += tag("details", tag("summary", count) + more, class_="place screen") + tag("div", count, class_="place print")
+        rows.append([badge(name), words, links.remark(group[0].stem, why) or text(UNTOLD if len(group) > 1 else group[0].worst["reason"])])
     return table(["verdict", "statement", "why"], rows, "exceptions") if rows else tag("p", "Nothing.")
 
 
