@@ -63,7 +63,7 @@ help:
 	@echo "-jN                N jobs at once instead of one per core ($(cores) here)"
 	@echo "BUILD=FOLDER       build there instead of in build/"
 	@echo "CXX=clang++, CMAKE_GENERATOR=Ninja, OPTIONS=-D...  another compiler, build tool, options for CMake"
-	@echo 'LAUNCH="srun -n1"  prefix of each run's command: make figures -j100 LAUNCH="srun -n1"'
+	@echo 'LAUNCH="srun -n1"  prefix of the command of each run: make figures -j100 LAUNCH="srun -n1"'
 	@echo "Interrupt it at any time and repeat the command: finished runs are kept."
 
 # prepare(step, kinds of packages, targets): packages, configuration and executables, as far as a target needs them.

@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import subprocess
 import unittest
 
 from report_content import PAPERS
@@ -44,6 +45,12 @@ class Release(unittest.TestCase):
 
     def test_the_paper_cites_what_its_bibliography_has(self):
         self.assertEqual(set(re.findall(r"@(\w+)", read("paper.md"))), set(re.findall(r"^@\w+\{(\w+)", read("paper.bib"), re.MULTILINE)))
+
+    def test_make_help(self):
+        done = subprocess.run(["make", "-C", ROOT, "help"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for target in ("figures", "check", "report", "findings", "gallery", "docs", "site"):
+            self.assertRegex(done.stdout, rf"(?m)^make [\w |]*\b{target}\b")
 
     def test_the_container_has_the_packages_of_the_lists(self):
         self.assertIn("packages.txt packages-tests.txt | xargs apt-get install", read("Containerfile"))
