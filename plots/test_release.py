@@ -47,7 +47,8 @@ class Release(unittest.TestCase):
         self.assertEqual(set(re.findall(r"@(\w+)", read("paper.md"))), set(re.findall(r"^@\w+\{(\w+)", read("paper.bib"), re.MULTILINE)))
 
     def test_make_help(self):
-        done = subprocess.run(["make", "-C", ROOT, "help"], capture_output=True, text=True, check=False)
+        environment = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
+        done = subprocess.run(["make", "-s", "-C", ROOT, "help"], capture_output=True, text=True, check=False, env=environment)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         for target in ("figures", "check", "report", "findings", "gallery", "docs", "site"):
             self.assertRegex(done.stdout, rf"(?m)^make [\w |]*\b{target}\b")
