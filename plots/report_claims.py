@@ -29,15 +29,16 @@ class Links:
         self.named = set()
         for statement in results.statements:
             for claim in statement.claims:
-                for part, target in self._parts(statement.stem, claim["remark"]):
-                    if target:
-                        self.named.add(target)
+                for words in (claim["statement"], claim["remark"]):
+                    self.named.update(target for _, target in self._parts(statement.stem, words)
+                                      if target and target != anchor(statement.stem, claim["id"]))
 
-    def remark(self, stem, words):
-        """The remark as HTML, in which names of claims are links to them; one that this preset does not check says so."""
+    def remark(self, stem, words, own=""):
+        """A remark, or a statement, as HTML, in which names of claims are links to them; one that this preset does not check
+        says so. `own`: the claim whose words these are, which needs no link to itself."""
         made = []
         for part, target in self._parts(stem, words):
-            if target:
+            if target and target != own:
                 claim = self.known[target]
                 made.append(link(target, tag("code", html.escape(part)), title=claim["statement"]))
             else:
@@ -69,7 +70,8 @@ def claim_rows(statement, links):
         first, last = i == 0, i == len(statement.claims) - 1
         quote = statement.source.get("quote", "")
         place_of = text(statement.source["place"]) + (f": “{text(quote)}”" if quote else "")
-        words = text(statement.first["statement"]) + tag("div", place_of, class_="place")
+        words = links.remark(statement.stem, statement.first["statement"], anchor(statement.stem, statement.first["id"]))
+        words += tag("div", place_of, class_="place")
         same_remark = not first and claim["remark"] == statement.claims[i - 1]["remark"]
         remark = "" if same_remark or not claim["remark"] else tag("span", links.remark(statement.stem, claim["remark"]), class_="remark")
         reason = tag("span", text(claim["reason"]), class_="remark") if claim["reason"] else ""

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tests of the report and of the gallery that is made from it."""
+import glob
 import html.parser
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -188,6 +190,19 @@ class Report(unittest.TestCase):
         for name in ("u-fine", "runs"):
             self.assertEqual(page.count(f'<a href="#mcf_sphere.{name}" title='), 1)
         self.assertIn("see not-at-this-preset, checked at the other preset", words)
+
+    def test_committed_remarks_name_claims_that_exist(self):
+        known, named = [], []
+        for path in glob.glob(os.path.join(os.path.dirname(FOLDER), "reference/*.json")):
+            with open(path, encoding="utf-8") as file:
+                for entry in json.load(file)["claims"]:
+                    known.append(".+".join(map(re.escape, re.split(r"\{[^}]*\}", entry["id"]))))
+                    words = [entry.get(key, "") for key in ("statement", "remark")]
+                    words += [change.get("remark", "") or "" for change in entry.get("except", [])]
+                    named += [(path, name) for text_ in words for name in re.findall(r"\bsee ([a-z]\w*(?:-[\w.]*\w)+)", text_)]
+        self.assertGreater(len(named), 20)
+        for path, name in named:
+            self.assertRegex(name, f"^(?:{'|'.join(known)})$", path)
 
     def test_own_runs_are_not_counted_with_the_papers(self):
         page, words = self.page(claim("a"), claim("b", "finding", "own runs", "esfem"), claim("c", "regression", "own runs", "esfem"))
