@@ -11,8 +11,8 @@
 //
 // nu_h of kll21 (3.4)-(3.5) does not stay of unit length. The paper recommends to normalise it, and to
 // project z_h, in the nodes after each step: the runs projected. Runs coefficients project only nu~ and z~,
-// of which f, g and F are made (WillmoreFlow::Variant::Projection). docs/findings/projection.md has reasons and
-// results.
+// of which f, g and F are made (WillmoreFlow::Variant::Projection). docs/findings/projection.md has reasons
+// and results.
 //   order   ellipsoid with half axes 2, 2, 1.6 on [0.1, 0.5]: errors of x, u = (H, nu) and w = (V, z) against
 //           BDF5 with 1,024 steps on the same mesh, which gives the starting values. Before t = 0.1, in the
 //           initial layer that interpolated values leave, no method shows its order.
