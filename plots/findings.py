@@ -17,6 +17,7 @@ import os
 import re
 import sys
 
+from report_claims import Links, anchor
 from report_content import PAPERS
 from report_data import BEYOND_STEMS, OWN, differences, figure_verdict, of_section, place, read_results, verdict
 from report_html import text
@@ -102,30 +103,56 @@ def cell(words):
     return text(words).replace("|", "&#124;").replace("*", "&#42;")
 
 
+class Remarks:
+    """Remarks in which names of claims lead to where the pages list them."""
+
+    def __init__(self, placed, results):
+        self.links = Links(results)
+        self.pages = {}
+        for (section, _), statements in placed.items():
+            for statement in statements:
+                if not statement.family and statement.source["basis"] != "regression":
+                    self.pages.update({anchor(statement.stem, claim["id"]): section for claim in statement.claims})
+
+    def cell(self, stem, words, page):
+        """Words of a claim of `stem` for a table of `page`."""
+        made = []
+        for part, target in self.links.parts(stem, words):
+            if not target:
+                made.append(cell(part))
+            elif target in self.pages:
+                other = "" if self.pages[target] == page else self.pages[target] + ".md"
+                made.append(f"[`{part}`]({other}#{target})")
+            else:
+                made.append(f"`{part}`")
+        return "".join(made)
+
+
 def table(heads, rows):
     lines = [heads, ["---"] * len(heads), *rows]
     return "\n".join("| " + " | ".join(line) + " |" for line in lines)
 
 
-def check(claim):
-    """What was measured, and the remark, of one check."""
-    remark = f": {cell(claim['remark'])}" if claim["remark"] else ""
-    return f"`{claim['id']}` {cell(claim['measured'])}{remark}"
+def check(stem, claim, remarks, page):
+    """What was measured, and the remark, of one check, with its name, to which remarks lead."""
+    remark = f": {remarks.cell(stem, claim['remark'], page)}" if claim["remark"] else ""
+    return f'<a id="{anchor(stem, claim["id"])}"></a>`{claim["id"]}` {cell(claim["measured"])}{remark}'
 
 
-def statement_row(statement):
+def statement_row(statement, remarks, page):
     # A remark that several checks share is written once.
     parts, before = [], None
     for claim in statement.claims:
-        parts.append(check(claim if claim["remark"] != before else claim | {"remark": ""}))
+        parts.append(check(statement.stem, claim if claim["remark"] != before else claim | {"remark": ""}, remarks, page))
         before = claim["remark"]
-    return [statement.verdict, f"{cell(statement.first['statement'])} ({cell(statement.source['place'])})", "<br>".join(parts)]
+    words = remarks.cell(statement.stem, statement.first["statement"], page)
+    return [statement.verdict, f"{words} ({cell(statement.source['place'])})", "<br>".join(parts)]
 
 
-def statements_table(statements):
+def statements_table(statements, remarks, page):
     """A row for each statement, and a line for each family."""
     single = [statement for statement in statements if not statement.family]
-    parts = [table(["verdict", "statement", "measured"], map(statement_row, single))] if single else []
+    parts = [table(["verdict", "statement", "measured"], [statement_row(s, remarks, page) for s in single])] if single else []
     families = {}
     for statement in statements:
         if statement.family:
@@ -149,12 +176,12 @@ def figures_table(paper, placed):
     return table(["figure", "what it shows, and what the runs say", "executable", "verdict"], rows.values())
 
 
-def differences_table(statements):
+def differences_table(statements, remarks, page):
     rows = []
     for name, why, group in differences(statements):
         words = "<br>".join(f"{cell(s.first['statement'])} ({cell(s.source['place'])})" for s in group[:SHOWN])
         words += f"<br>and {len(group) - SHOWN} more" if len(group) > SHOWN else ""
-        rows.append([name, words, cell(why or (UNTOLD if len(group) > 1 else group[0].worst["reason"]))])
+        rows.append([name, words, remarks.cell(group[0].stem, why or (UNTOLD if len(group) > 1 else group[0].worst["reason"]), page)])
     return table(["verdict", "statement", "why"], rows) if rows else "Nothing."
 
 
@@ -168,35 +195,35 @@ def provenance(results, stems):
             f"{values('cpu')}. The report has all checks and all orders: `make report`.*")
 
 
-def paper_page(paper, placed, results, story):
+def paper_page(paper, placed, results, remarks, story):
     statements = of_section(placed, paper.key)
     theirs = [s for s in statements if s.source["basis"] not in OWN]
     own = [s for s in statements if s.source["basis"] == "finding"]
     doi = f", [doi:{paper.doi}]({DOI}{paper.doi})" if paper.doi else ""
     stems = {s.stem for s in statements}
     return [f"# {paper.name} ({paper.key})", f"{paper.authors}: {paper.title}. {paper.journal}{doi}. {cell(paper.about)}",
-            provenance(results, sorted(stems)), "## Figures", figures_table(paper, placed), "## What differs", differences_table(statements),
-            story, "## All statements", statements_table(theirs), "## What the project's own runs show", statements_table(own)]
+            provenance(results, sorted(stems)), "## Figures", figures_table(paper, placed), "## What differs", differences_table(statements, remarks, paper.key),
+            story, "## All statements", statements_table(theirs, remarks, paper.key), "## What the project's own runs show", statements_table(own, remarks, paper.key)]
 
 
-def beyond_page(placed, results, story):
+def beyond_page(placed, results, remarks, story):
     parts = ["# Beyond the papers", provenance(results, [stem for stem in BEYOND_STEMS if stem in results.tables]), story]
     for stem in dict.fromkeys(BEYOND_STEMS):
         statements = [s for s in placed.get(("beyond", stem), []) if s.source["basis"] != "regression"]
         if statements:
-            parts += [f"## Claims of `{stem}`", statements_table(statements)]
+            parts += [f"## Claims of `{stem}`", statements_table(statements, remarks, "beyond")]
     return parts
 
 
-def page(name, placed, results):
+def page(name, placed, results, remarks):
     """The text of a page."""
     with open(f"{FOLDER}/{name}.md", encoding="utf-8") as file:
         story = Numbers(results).filled(file.read().strip(), f"plots/findings/{name}.md")
     papers = {paper.key: paper for paper in PAPERS}
     if name in papers:
-        parts = paper_page(papers[name], placed, results, story)
+        parts = paper_page(papers[name], placed, results, remarks, story)
     else:
-        parts = beyond_page(placed, results, story) if name == "beyond" else [story]
+        parts = beyond_page(placed, results, remarks, story) if name == "beyond" else [story]
     return "\n\n".join([MADE.format(name) + "\n" + made_from(name), *parts]) + "\n"
 
 
@@ -225,9 +252,10 @@ def outdated(docs):
 def write_all(verdicts, docs):
     results = read_results(verdicts, REFERENCE)
     placed = place(results)
+    remarks = Remarks(placed, results)
     os.makedirs(f"{docs}/findings", exist_ok=True)
     for name in names():
-        made = page(name, placed, results)
+        made = page(name, placed, results, remarks)
         with open(f"{docs}/findings/{name}.md", "w", encoding="utf-8") as file:
             file.write(made)
 

@@ -30,14 +30,14 @@ class Links:
         for statement in results.statements:
             for claim in statement.claims:
                 for words in (claim["statement"], claim["remark"]):
-                    self.named.update(target for _, target in self._parts(statement.stem, words)
+                    self.named.update(target for _, target in self.parts(statement.stem, words)
                                       if target and target != anchor(statement.stem, claim["id"]))
 
     def remark(self, stem, words, own=""):
         """A remark, or a statement, as HTML, in which names of claims are links to them; one that this preset does not check
         says so. `own`: the claim whose words these are, which needs no link to itself."""
         made = []
-        for part, target in self._parts(stem, words):
+        for part, target in self.parts(stem, words):
             if target and target != own:
                 claim = self.known[target]
                 made.append(link(target, tag("code", html.escape(part)), title=claim["statement"]))
@@ -50,7 +50,7 @@ class Links:
         variants = self.catches.get(stem, {}).get(name, [])
         return tag("div", "catches: " + text(", ".join(map(str, variants))), class_="place") if variants else ""
 
-    def _parts(self, stem, words):
+    def parts(self, stem, words):
         """[(words, anchor of the claim that they name, or None)]. Names without a hyphen are claims only behind "see"."""
         parts, done = [], 0
         for match in WORD.finditer(words):

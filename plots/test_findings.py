@@ -88,6 +88,7 @@ class Pages(unittest.TestCase):
                 self.assertTrue(os.path.exists(path), f"{page}: {target}")
                 if anchor:
                     heads = [re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in re.findall(r"^#+ (.*)", read(path), re.M)]
+                    heads += re.findall(r'<a id="([^"]*)"', read(path))
                     self.assertIn(anchor, heads, f"{page}: {target}")
 
     def test_the_readme_is_short(self):
@@ -119,9 +120,14 @@ class Numbers(unittest.TestCase):
                 self.filled(wrong)
 
     def test_statements(self):
-        group = [Statement("mcf_sphere", [claim("a", remark="|nu_h| grows")]), Statement("mcf_sphere", [claim("u", **CANNOT_BE_TOLD)])]
-        table = findings.statements_table(group)
-        self.assertIn("| reproduced | statement of a (§13.1, Fig. 13.1) | `a` 2.95 [2.79, 3.11]: &#124;ν<sub>h</sub>&#124; grows |", table)
+        group = [Statement("mcf_sphere", [claim("a", remark="|nu_h| grows, see u-fine and see other")]),
+                 Statement("mcf_sphere", [claim("u-fine", **CANNOT_BE_TOLD)])]
+        other = Statement("mcf_sphere", [claim("other")])
+        results = Results(statements=[*group, other])
+        remarks = findings.Remarks({("kll19", "13.1"): group, ("beyond", "x"): [other]}, results)
+        table = findings.statements_table(group, remarks, "kll19")
+        self.assertIn('| reproduced | statement of a (§13.1, Fig. 13.1) | <a id="mcf_sphere.a"></a>`a` 2.95 [2.79, 3.11]: '
+                      "&#124;ν<sub>h</sub>&#124; grows, see [`u-fine`](#mcf_sphere.u-fine) and see [`other`](beyond.md#mcf_sphere.other) |", table)
         self.assertIn("| cannot be told |", table)
 
 
