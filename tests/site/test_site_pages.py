@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tests of the site, of a small tree of sources. Where markdown is not installed, a line says that it was not tested."""
 import os
+import sys
 import tempfile
 import unittest
 
 from matplotlib.figure import Figure
 
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../plots"))
 import site_pages as site
 import style
 
