@@ -114,7 +114,8 @@ docs:
 	echo "docs: $(BUILD)/api/html/index.html"
 site:
 	@$(PYTHON) plots/site_pages.py site --report report --figures figures --api $(BUILD)/api/html
-# The packages of these tests are in no list, so they are no part of the check. Every page in a browser, where Chromium is installed: nothing on its console, nothing wider than the page.
+# Every page in a browser, where Chromium is installed: nothing on its console, nothing wider than the page. The packages of
+# these tests are in no list, so they are no part of the check.
 site-check: site
 	@$(PYTHON) -m unittest discover -q -s tests/site
 	$(PYTHON) tests/site/check_site.py site $(BUILD)/site-check
