@@ -83,8 +83,10 @@ std::string evolve_config_help() {
                                               if one is given
             "remesh": 0.1,                    replaces the flat triangles of the file by new ones on them, with edges of
                                               about this length; default: no. Edges sharper than feature_angle are kept
-            "curve": true}                    puts nodes of degree 2 to 4 on a smooth surface through the corners; default: no.
+            "curve": true,                    puts nodes of degree 2 to 4 on a smooth surface through the corners; default: no.
                                               {"feature_angle": 40}, in degrees: sharper edges stay sharp
+            "refine": 0}                      how often each triangle is cut into four: on the surface, if one is given; with
+                                              curve on the smooth one; else on the elements of the file
          | {"edge_length": 0.25,              largest edge of a generated mesh, in the surface's units
             "grading": 0.5}                   edges at most this times the radius of curvature; default: edges of one length
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
