@@ -8,14 +8,18 @@
 //               build/bin/evolve reference/examples/willmore.json
 //               build/bin/evolve reference/examples/genus2.json
 //               build/bin/evolve reference/examples/turing.json
+//               build/bin/evolve reference/examples/sweep_schnakenberg.json --set parameters.gamma=10,30,100
+//                 --set parameters.b=0.7,0.9,1.1 --output build/sweep
 //
 // Writes the nodal values at the end, a time series and snapshots, as the file says; `evolve --help` explains
 // its keys.
 #include <iostream>
 
 #include "experiments/evolve/run_configuration.hpp"
+#include "experiments/evolve/sweep.hpp"
 #include "experiments/harness/command_line.hpp"
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/kept_cells.hpp"
 #include "experiments/harness/provenance.hpp"
 #include "solver/error.hpp"
 #include "solver/thread_count.hpp"
@@ -40,15 +44,21 @@ int main(int argc, char** argv) {
     std::string file;
     int threads = 1;
     bool schema = false;
+    std::vector<std::string> sets;
+    CellRequest request;
     CommandLine line(
         "Evolves a surface: flow, surface or mesh, and method come from a JSON file.\n"
         "Example: evolve reference/examples/sphere.json\n\n" +
-            evolve_config_help(),
+            evolve_config_help() + "\n" + sweep_help(),
         "evolve");
     line.optional_argument("config", file, "the configuration", "CONFIG.json");
     line.flag("--schema", schema,
               "print the keys of a configuration as JSON Schema; editors complete a configuration that "
               "has \"$schema\": \"schema.json\"");
+    line.texts("--set", sets,
+               "a key and its values, such as parameters.gamma=10,20,30; repeatable: see Sweeps",
+               "KEY=VALUES");
+    add_kept_cell_options(line, request);
     line.integer("--threads", 1, 1024, threads, "threads that the factorisations may use");
     if (!line.parse(argc, argv)) return static_cast<int>(exit_done);
     if (schema) {
@@ -57,6 +67,9 @@ int main(int argc, char** argv) {
     }
     if (file.empty()) throw InputError("config is required: expected CONFIG.json (see --help)");
     set_thread_count(threads);
-    return evolve(file, provenance(argc, argv));
+    const json origin = provenance(argc, argv);
+    if (sets.empty() && request.output.empty() && !request.list) return evolve(file, origin);
+    sweep(read_json(file), file, sets, request, origin);
+    return static_cast<int>(exit_done);
   });
 }
