@@ -31,7 +31,7 @@ BIN := $(BUILD)/bin
 PYTHON ?= $(shell for p in python3 /usr/bin/python3; do \
   $$p -c 'import matplotlib' 2>/dev/null && echo $$p && exit; done; echo no-python3-with-matplotlib)
 stems := $(sort $(basename $(notdir $(shell grep -l run_experiment experiments/*.cpp 2>/dev/null))))
-programs := evolve check_orders compare_tables
+programs := evolve study check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
 .PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu test-norms sanitize fuzz crash \
@@ -48,6 +48,7 @@ help:
 	@echo "make STEM          one experiment as published, with its figures; STEM is one of"
 	@echo "                   $(or $(stems),(none yet))"
 	@echo "make evolve        only the program for your own surface, mesh and flow -> $(BIN)/evolve"
+	@echo "make study         only the program for the convergence of such a problem -> $(BIN)/study"
 	@echo "make sanitize      tests of fe, mesh, assembly, linalg, time and tables under AddressSanitizer and UBSan"
 	@echo "make crash         kills runs at KILLS=200 random moments, fills disks, damages checkpoints; then compares the numbers"
 	@echo "make fuzz          mutated files for each reader, SECONDS=60 of each, in build-fuzz/ (needs clang)"

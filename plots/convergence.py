@@ -18,7 +18,11 @@ QUANTITIES = {"x": "surface $x$", "v": "velocity $v$", "nu": r"normal $\nu$", "H
 NORMS = {"nodal_L2": "$L^\\infty(L^2)$, nodal", "nodal_H1": "$L^\\infty(H^1)$, nodal",
          "nodal_H1_semi": "$L^\\infty(H^1)$ seminorm, nodal",
          "lifted_L2": "$L^\\infty(L^2)$, lifted", "lifted_H1": "$L^\\infty(H^1)$, lifted",
-         "lifted_H1_semi": "$L^\\infty(H^1)$ seminorm, lifted"}
+         "lifted_H1_semi": "$L^\\infty(H^1)$ seminorm, lifted",
+         "quadrature_L2": "$L^\\infty(L^2)$, quadrature", "quadrature_H1": "$L^\\infty(H^1)$, quadrature",
+         "quadrature_H1_semi": "$L^\\infty(H^1)$ seminorm, quadrature",
+         "closest_L2": "$L^2$ at the end, closest point", "closest_H1": "$H^1$ at the end, closest point",
+         "closest_H1_semi": "$H^1$ seminorm at the end, closest point"}
 # The same without the maximum over time.
 NORMS_AT_A_TIME = {norm: name.replace(r"L^\infty(", "", 1).replace(")", "", 1) for norm, name in NORMS.items()}
 AXES = {"tau": r"step size $\tau$", "h": "mesh width $h$"}

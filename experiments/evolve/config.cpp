@@ -194,19 +194,25 @@ SnapshotPlan snapshot_plan(const JsonReader& output) {
   return plan;
 }
 
-}  // namespace
+/// A configuration without its mesh, and what that will be made of.
+struct Keys {
+  json description;
+  std::optional<Initial> earlier;
+  std::optional<int> degree;
+  EvolveConfig config;
+};
 
-EvolveConfig evolve_config(const json& given, const std::string& source) {
+/// Reads all keys but those of the mesh.
+Keys read_keys(const json& given, const std::string& source) {
   std::set<std::string> known = {"$schema", "flow",       "surface",  "mesh",       "degree",  "bdf",
                                  "tau",     "steps",      "start",    "quadrature", "variant", "output",
                                  "problem", "parameters", "adaptive", "limits",     "initial", "stop"};
   known.merge(formula_keys());
   JsonReader(given, source).accept_only(known);
-  std::optional<Initial> earlier = read_initial(given, source);
-  json description = given;
-  if (earlier) description.update(earlier->taken_over);
-  const JsonReader reader(description, source);
-  EvolveConfig config;
+  Keys keys{given, read_initial(given, source), {}, {}};
+  if (keys.earlier) keys.description.update(keys.earlier->taken_over);
+  const JsonReader reader(keys.description, source);
+  EvolveConfig& config = keys.config;
   const Entry& entry =
       entry_named(reader.text("flow"), reader.has("problem") ? reader.text("problem") : "", source);
   config.entry = &entry;
@@ -232,8 +238,27 @@ EvolveConfig evolve_config(const json& given, const std::string& source) {
   config.parameters = settings(reader, "parameters", entry.parameters, entry);
   read_formulas(reader, config);
   if (entry.check) entry.check(config, source);
-  std::optional<int> degree;
-  if (reader.has("degree")) degree = reader.integer_within("degree", 0, 1, max_degree);
+  if (reader.has("degree")) keys.degree = reader.integer_within("degree", 0, 1, max_degree);
+  return keys;
+}
+
+}  // namespace
+
+EvolveConfig checked_keys(const json& given, const std::string& source) {
+  Keys keys = read_keys(given, source);
+  if (!keys.earlier)
+    check_mesh_keys(JsonReader(JsonReader(given, source).object("mesh"), source + ": mesh"),
+                    keys.config.surface.has_value());
+  return std::move(keys.config);
+}
+
+EvolveConfig evolve_config(const json& given, const std::string& source) {
+  Keys keys = read_keys(given, source);
+  std::optional<Initial>& earlier = keys.earlier;
+  const std::optional<int>& degree = keys.degree;
+  EvolveConfig& config = keys.config;
+  const Entry& entry = *config.entry;
+  const JsonReader reader(keys.description, source);
   const std::string place = earlier ? "initial" : "mesh";
   const JsonReader mesh(reader.object(place), source + ": " + place);
   if (mesh.has("file") && is_snapshot_of(mesh.text("file"), config.snapshots.pvd))
@@ -255,7 +280,7 @@ EvolveConfig evolve_config(const json& given, const std::string& source) {
   scale_defaults(reader, config);
   if (earlier) require_start(config, source + ": initial");
   take_initial_values(config);
-  return config;
+  return std::move(keys.config);
 }
 
 }  // namespace esfem

@@ -54,6 +54,9 @@ struct EvolveConfig {
 /// wrong type or range.
 EvolveConfig evolve_config(const nlohmann::json& json, const std::string& source);
 
+/// The same without the mesh and what depends on it.
+EvolveConfig checked_keys(const nlohmann::json& json, const std::string& source);
+
 /// The keys with their defaults, for --help.
 std::string evolve_config_help();
 

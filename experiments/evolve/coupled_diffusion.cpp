@@ -94,6 +94,9 @@ std::vector<Entry> coupled_diffusion_entries() {
   sphere.variant.push_back(word("coupling", {"additive", "quotient", "none"}, "of g to u"));
   sphere.parameters = {{Key::number, "alpha", 1, "of (2.8)"}, {Key::number, "beta", 1, "of (2.8)"}};
   sphere.run = run_growing_sphere;
+  sphere.exact_solution = [](const EvolveConfig&) -> std::optional<ExactEvolution> {
+    return growing_sphere();
+  };
   sphere.check = [](const EvolveConfig& config, const std::string& source) {
     require_unit_sphere(config, source + ": parameters: problem growing_sphere");
   };

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 namespace esfem {
 
 struct EvolveConfig;
+struct ExactEvolution;
 struct Run;
 
 /// A key of the configuration whose value has formulas.
@@ -35,6 +37,9 @@ struct Entry {
   std::function<void(const Run&)> run;
   /// Throws InputError for what the keys alone do not show; `source` heads the message. None: nothing.
   std::function<void(const EvolveConfig&, const std::string& source)> check = {};
+
+  /// The exact solution, where one is known for the configuration; none: there is none.
+  std::function<std::optional<ExactEvolution>(const EvolveConfig&)> exact_solution = {};
 
   int highest_order = max_bdf_order;
   int order = 3, order_on_files = 3;  ///< of BDF where none is given; on a mesh file without a surface

@@ -7,6 +7,23 @@
 #include "solver/problems/formula_data.hpp"
 
 namespace esfem {
+namespace {
+
+/// The formulas and their gradients, as quadrature_errors takes them.
+FunctionInSpace in_space(const CompiledFormulas& values_and_gradients, double t) {
+  const int components = values_and_gradients.count() / 4;
+  return [&, t, components, out = std::vector<Pack>(4 * components)](const Batch&, int, const Pack(&x)[3],
+                                                                     FieldsAtPoints& at_points) mutable {
+    const Pack in[4] = {x[0], x[1], x[2], pack(t)};
+    values_and_gradients.evaluate(in, out.data());
+    for (int l = 0; l < components; ++l) {
+      at_points.value[l] = out[l];
+      for (int i = 0; i < 3; ++i) at_points.gradient[l][i] = out[components + 3 * l + i];
+    }
+  };
+}
+
+}  // namespace
 
 ExactFormulas::ExactFormulas(const EvolveConfig& config, const SurfaceSpace& space)
     : space_(space), where_(config.source + ": exact"), M_(space.matrix()), A_(space.matrix()) {
@@ -15,15 +32,20 @@ ExactFormulas::ExactFormulas(const EvolveConfig& config, const SurfaceSpace& spa
   const FormulaNames names = names_in_space_time(names_of(config));
   for (const auto& item : config.formulas.at("exact").items()) {
     const std::string& name = item.key();
-    formulas_[name] =
-        CompiledFormulas(item.value().is_array() ? formulas_in(reader, name, names)
-                                                 : std::vector<Formula>{formula_in(reader, name, names)});
+    const std::vector<Formula> values = item.value().is_array()
+                                            ? formulas_in(reader, name, names)
+                                            : std::vector<Formula>{formula_in(reader, name, names)};
+    std::vector<Formula> all = values;
+    for (const Formula& value : values)
+      for (const char* coordinate : {"x", "y", "z"}) all.push_back(value.derivative(coordinate));
+    formulas_[name] = {CompiledFormulas(values), CompiledFormulas(all)};
   }
 }
 
 void ExactFormulas::record(double t, const Field& x, const NodalFields& fields, Series& series) {
   space_.assemble(x, M_, A_);
-  for (const auto& [name, formulas] : formulas_) {
+  for (const auto& [name, exact] : formulas_) {
+    const CompiledFormulas& formulas = exact.values;
     const Field* values = find(fields, name);
     if (!values) {
       std::string known;
@@ -35,7 +57,10 @@ void ExactFormulas::record(double t, const Field& x, const NodalFields& fields, 
                                        values->cols(), formulas.count()));
     const Field e = *values - nodal_values(formulas, x, t);
     Errors norms;
-    raise_maxima({space_, {{name, formulas.count()}}}, "nodal", nodal_norms(M_, A_, e), norms);
+    const Quantities quantity(space_, {{name, formulas.count()}});
+    raise_maxima(quantity, "nodal", nodal_norms(M_, A_, e), norms);
+    raise_maxima(quantity, "quadrature",
+                 quadrature_errors(space_, x, in_space(exact.values_and_gradients, t), *values), norms);
     for (const auto& [norm, error] : norms.at(name)) series[name + "_" + norm].push_back(error);
   }
 }

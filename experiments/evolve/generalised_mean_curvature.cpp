@@ -8,19 +8,21 @@
 namespace esfem {
 namespace {
 
+std::optional<ExactEvolution> exact_sphere(const EvolveConfig& config) {
+  if (!config.surface || config.surface->name != "sphere") return {};
+  return power_law_sphere(config.surface->parameters.at("radius"),
+                          PowerLaw(config.parameters.number("power")));
+}
+
 void run_generalised_mean_curvature(const Run& run) {
   using State = GeneralisedMeanCurvatureFlow::State;
   using Variant = MeanCurvatureFlow::Variant;
   const EvolveConfig& config = run.config;
   const Field& x0 = config.mesh.nodes;
   const PowerLaw law(config.parameters.number("power"));
-  const bool is_sphere = config.surface && config.surface->name == "sphere";
-  ExactEvolution exact;
+  const std::optional<ExactEvolution> exact = exact_sphere(config);
   std::function<State(double)> exact_state;
-  if (is_sphere) {
-    exact = power_law_sphere(config.surface->parameters.at("radius"), law);
-    exact_state = [&](double t) { return exact_generalised_mean_curvature_state(exact, x0, t); };
-  }
+  if (exact) exact_state = [&](double t) { return exact_generalised_mean_curvature_state(*exact, x0, t); };
   const Field nu_V = start_values(config, {"nu", "V"});
   State initial;
   if (nu_V.size() > 0) {
@@ -47,6 +49,7 @@ std::vector<Entry> generalised_mean_curvature_entries() {
       word("velocity", {"ritz", "interpolation"}, "v_h: Ritz projection of -V_h nu_h, or its nodal values")};
   entry.parameters = {{Key::number, "power", 2, "of H, not 0"}};
   entry.run = run_generalised_mean_curvature;
+  entry.exact_solution = exact_sphere;
   entry.check = [](const EvolveConfig& config, const std::string&) {
     PowerLaw(config.parameters.number("power"));
   };

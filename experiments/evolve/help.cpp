@@ -83,8 +83,10 @@ std::string evolve_config_help() {
                                               if one is given
             "remesh": 0.1,                    replaces the flat triangles of the file by new ones on them, with edges of
                                               about this length; default: no. Edges sharper than feature_angle are kept
-            "curve": true}                    puts nodes of degree 2 to 4 on a smooth surface through the corners; default: no.
+            "curve": true,                    puts nodes of degree 2 to 4 on a smooth surface through the corners; default: no.
                                               {"feature_angle": 40}, in degrees: sharper edges stay sharp
+            "refine": 0}                      how often each triangle is cut into four: on the surface, if one is given; with
+                                              curve on the smooth one; else on the elements of the file
          | {"edge_length": 0.25,              largest edge of a generated mesh, in the surface's units
             "grading": 0.5}                   edges at most this times the radius of curvature; default: edges of one length
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
@@ -141,8 +143,9 @@ A run starts from those nodal values of its mesh file ($NodeData of .msh, point 
 of .ply: H, or nu_x, nu_y, nu_z) that are listed with its flow ("starts from"), and reports this. t starts at 0, and defaults are relative to the length of this surface: to continue with
 the parameters of an earlier run, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H,
 h, worst_angle (degrees), worst_radius_ratio; if the flow has nu, also min_nu and max_nu; for willmore and surface_diffusion
-kappa_energy, 1/2 int |kappa|² of the surface itself; with "exact" the nodal errors u_nodal_L2, u_nodal_H1 and
-u_nodal_H1_semi of each field that has a formula; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
+kappa_energy, 1/2 int |kappa|² of the surface itself; with "exact", of each field that has a formula, the errors u_nodal_L2,
+u_nodal_H1 and u_nodal_H1_semi of its nodal values, which can superconverge on even meshes, and u_quadrature_L2, .. by
+quadrature on the computed surface; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
 (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as field data TimeValue, step, flow and
 configuration (this file; texts are arrays of bytes). If the flow has no nu, then max_H, willmore_energy, and nu and H of
 the snapshots are those of the discrete surface.

@@ -3,6 +3,8 @@
 
 #include <filesystem>
 #include <set>
+#include <tuple>
+#include <utility>
 
 #include "experiments/evolve/config.hpp"
 #include "experiments/evolve/history.hpp"
@@ -53,6 +55,18 @@ Mesh mesh_of(const JsonReader& file) {
     throw InputError(format("%s: elements: found %d nodes in each; expected 3, 6, 10 or 15 (degree 1 to 4)",
                             file.where().c_str(), int(mesh.elements.cols())));
   return mesh;
+}
+
+/// The mesh and all nodal values beside x.
+std::pair<Mesh, NodalFields> surface_of(const json& content, const std::string& name) {
+  std::pair<Mesh, NodalFields> surface = {mesh_of(JsonReader(content, name)), {}};
+  for (const auto& [key, values] : content.items()) {
+    if (other_keys.count(key)) continue;
+    surface.second.push_back({key, nodal_values(values, name + ": " + key)});
+    if (surface.second.back().values.rows() != surface.first.nodes.rows())
+      throw InputError(name + ": " + key + ": expected a row per node");
+  }
+  return surface;
 }
 
 /// The history of a file, complete enough to be looked at; null without one.
@@ -107,13 +121,7 @@ Initial from_nodal_output(const json& description, const JsonReader& whole, cons
   const JsonReader file(content, name);
   Initial initial{name, file.has("flow") ? file.text("flow") : "", {}, file.number("t"), history_in(file)};
   ReadMesh& start = initial.surface.start;
-  start.mesh = mesh_of(file);
-  for (const auto& [key, values] : content.items()) {
-    if (other_keys.count(key)) continue;
-    start.fields.push_back({key, nodal_values(values, name + ": " + key)});
-    if (start.fields.back().values.rows() != start.mesh.nodes.rows())
-      throw InputError(name + ": " + key + ": expected a row per node");
-  }
+  std::tie(start.mesh, start.fields) = surface_of(content, name);
   if (file.has("node_numbers"))
     for (const json& number : file.array("node_numbers"))
       start.node_numbers.push_back(number.is_number() ? number.get<long>() : 0);
@@ -148,6 +156,14 @@ Initial from_mesh_file(const JsonReader& whole, const std::string& name) {
 }
 
 }  // namespace
+
+ReadMesh read_nodal_output(const std::string& file) {
+  const json content = read_json(file);
+  ReadMesh surface;
+  surface.t = JsonReader(content, file).number("t");
+  std::tie(surface.mesh, surface.fields) = surface_of(content, file);
+  return surface;
+}
 
 std::optional<Initial> read_initial(const json& description, const std::string& source) {
   const JsonReader whole(description, source);

@@ -26,6 +26,9 @@ struct Initial {
 /// is none of these or has another degree, and for a "surface" beside it that is not that of its history.
 std::optional<Initial> read_initial(const nlohmann::json& description, const std::string& source);
 
+/// Surface, nodal values and time of a nodal output of evolve. Throws InputError for what is none.
+ReadMesh read_nodal_output(const std::string& file);
+
 /// Gives the configuration the times and the history. Its mesh is there already.
 void take_initial(Initial initial, EvolveConfig& config);
 

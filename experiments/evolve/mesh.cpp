@@ -4,6 +4,7 @@
 #include "solver/error.hpp"
 #include "solver/mesh/curve.hpp"
 #include "solver/mesh/generate.hpp"
+#include "solver/mesh/refine.hpp"
 #include "solver/mesh/remesh.hpp"
 
 namespace esfem {
@@ -44,11 +45,13 @@ struct FileTreatment {
   std::optional<double> remesh;  ///< edge length
   bool curve = false;
   double feature_angle = default_feature_angle;
+  int refine = 0;  ///< how often each triangle is cut into four
 };
 
 FileTreatment file_treatment(const JsonReader& description) {
   FileTreatment treatment;
   if (description.has("remesh")) treatment.remesh = description.number("remesh");
+  treatment.refine = description.integer_within("refine", 0, 0, 8);
   treatment.curve = description.is_object("curve") || description.truth_or("curve", false);
   if (!description.is_object("curve")) return treatment;
   const JsonReader curve(description.object("curve"), description.where() + ": curve");
@@ -58,6 +61,17 @@ FileTreatment file_treatment(const JsonReader& description) {
     throw InputError(format("%s: found feature_angle = %g; expected degrees, more than 0 and at most 180",
                             curve.where().c_str(), treatment.feature_angle));
   return treatment;
+}
+
+/// Cuts every triangle into four, on its own map. Returns the refined mesh as it is then.
+RefinedMesh refine_file(ReadMesh& start, const std::string& file, int times) {
+  RefinedMesh refined = refine(start.mesh, times);
+  for (NodalField& field : start.fields) field.values = refined_values(start.mesh, field.values, refined);
+  start.mesh = refined.mesh;
+  start.origin = {};
+  start.origin.source = file + ", refined";
+  start.node_numbers.clear();
+  return refined;
 }
 
 /// Linear in the triangles of the mesh that was remeshed.
@@ -102,7 +116,8 @@ void remesh_file(ReadMesh& start, const std::string& file, const FileTreatment& 
 
 void curve_file(ReadMesh& start, const std::string& file, const FileTreatment& treatment, int degree,
                 std::vector<std::string>& remarks) {
-  CurvedMesh result = curved_mesh(start.mesh, degree, treatment.feature_angle);
+  const Mesh flat = start.mesh;
+  CurvedMesh result = curved_mesh(flat, degree, treatment.feature_angle);
   std::string remark = format("%s: curved; %d of %d edges are sharper than %g degrees and kept", file.c_str(),
                               result.sharp_edges, result.edges, treatment.feature_angle);
   if (result.straight > 0)
@@ -111,6 +126,15 @@ void curve_file(ReadMesh& start, const std::string& file, const FileTreatment& t
   remarks.push_back(remark);
   raise_degree(start, degree);
   start.mesh.nodes = result.mesh.nodes;  // numbered alike
+  if (treatment.refine == 0) return;
+  // The nodes of the finer elements lie on the smooth surface, not on the coarse elements that interpolate
+  // it.
+  const RefinedMesh refined = refine_file(start, file, treatment.refine);
+  const SmoothSurface surface(flat, degree, treatment.feature_angle);
+  for (int i = 0; i < start.mesh.nodes.rows(); ++i) {
+    const double xi = refined.place(i, 0), eta = refined.place(i, 1);
+    start.mesh.nodes.row(i) = surface.point(refined.element[i], {1 - xi - eta, xi, eta});
+  }
 }
 
 EvolveMesh mesh_of_file(const JsonReader& description, std::optional<int> degree, bool on_surface) {
@@ -132,10 +156,12 @@ EvolveMesh mesh_of_file(const JsonReader& description, std::optional<int> degree
   const int k = degree.value_or(on_surface || treatment.curve ? 2 : flat ? 1 : start.mesh.degree);
   if (treatment.curve || treatment.remesh) raise_degree(start, 1);
   if (treatment.remesh) remesh_file(start, file, treatment, k, result.remarks);
-  if (treatment.curve)
+  if (treatment.curve) {
     curve_file(start, file, treatment, k, result.remarks);
-  else
+  } else {
     raise_degree(start, k);
+    if (treatment.refine > 0) refine_file(start, file, treatment.refine);
+  }
   if (!flat || on_surface || treatment.curve) return result;
   const char* const cure =
       "\"curve\": true beside \"file\" puts the nodes on a smooth surface through the corners";
@@ -151,23 +177,26 @@ EvolveMesh mesh_of_file(const JsonReader& description, std::optional<int> degree
 
 }  // namespace
 
+void check_mesh_keys(const JsonReader& description, bool has_surface) {
+  if (description.has("file")) return description.accept_only({"file", "curve", "remesh", "refine"});
+  const bool is_graded = description.has("edge_length") && description.has("grading");
+  if (is_graded) description.accept_only({"edge_length", "grading"});
+  const std::string key =
+      is_graded ? "edge_length" : description.only_key({"file", "edge_length", "subdivisions"});
+  if (!has_surface)
+    throw InputError(description.where() + ": " + key +
+                     " needs a \"surface\"; expected one, or a mesh with the key file");
+}
+
 EvolveMesh evolve_mesh(const JsonReader& description, std::optional<int> degree,
                        const std::optional<Surface>& surface) {
+  check_mesh_keys(description, surface.has_value());
   EvolveMesh result;
   if (description.has("file")) {
-    description.accept_only({"file", "curve", "remesh"});
     result = mesh_of_file(description, degree, surface.has_value());
   } else {
-    const bool is_graded = description.has("edge_length") && description.has("grading");
-    if (is_graded) description.accept_only({"edge_length", "grading"});
-    const std::string key =
-        is_graded ? "edge_length" : description.only_key({"file", "edge_length", "subdivisions"});
-    if (!surface) {
-      throw InputError(description.where() + ": " + key +
-                       " needs a \"surface\"; expected one, or a mesh with the key file");
-    }
     const Mesh mesh =
-        key == "edge_length"
+        description.has("edge_length")
             ? generated(*surface, description)
             : subdivided(*surface, description.integer_within("subdivisions", 0, 0, 8), description.where());
     result.start.mesh = lagrange_mesh(mesh, degree.value_or(2));

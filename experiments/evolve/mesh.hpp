@@ -15,7 +15,11 @@ struct EvolveMesh {
   std::vector<std::string> remarks;  ///< changes, choices and their consequences
 };
 
-/// The initial mesh that "mesh" of a configuration describes: generated, or read, remeshed and curved. Where
+/// Throws InputError for the keys of "mesh" that evolve_mesh does not take; has_surface: beside "surface".
+void check_mesh_keys(const JsonReader& description, bool has_surface);
+
+/// The initial mesh that "mesh" of a configuration describes: generated, or read, remeshed, curved and
+/// refined. Where
 /// no degree is given it is 2; for a file without a surface that of its elements, 1 when they are flat and
 /// are not to be curved. Throws InputError, which names the key or the file.
 EvolveMesh evolve_mesh(const JsonReader& description, std::optional<int> degree,

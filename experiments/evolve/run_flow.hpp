@@ -15,6 +15,7 @@
 #include "experiments/evolve/series_lines.hpp"
 #include "experiments/evolve/stop.hpp"
 #include "experiments/harness/progress.hpp"
+#include "solver/analysis/errors.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
@@ -39,6 +40,7 @@ struct Run {
   RunRecorder& recorder;
   Checkpoint* checkpoint;
   Outcome& outcome;
+  ErrorRecorder* errors = nullptr;  ///< against the flow's exact solution; none: not wanted
 };
 
 /// The exact solution under mean curvature flow of the surfaces that have one.
@@ -96,6 +98,14 @@ template <class State>
 void record_more(const Run&, const State&) {}
 void record_more(const Run& run, const CahnHilliardState& state);
 
+/// The errors of a state against the exact solution, among the series.
+template <class State>
+void record_errors(const Run& run, const State& state) {
+  run.errors->record(state);
+  for (const auto& [name, values] : run.errors->series())
+    if (name != "t") run.recorder.series()[name].push_back(values.back());
+}
+
 /// Integrates from the start, or from where the history of an earlier run ends, and records every step.
 template <class Flow>
 void run_flow(Flow&& flow, const Run& run, const typename std::decay_t<Flow>::State& initial,
@@ -109,6 +119,7 @@ void run_flow(Flow&& flow, const Run& run, const typename std::decay_t<Flow>::St
       run.recorder.record(n, state);
       if (!exact_formulas.empty())
         exact_formulas.record(state.t, state.x, nodal_fields(state), run.recorder.series());
+      if (run.errors) record_errors(run, state);
       record_more(run, state);
       return watch.look_at_step(n, state.t);
     });

@@ -110,6 +110,7 @@ json common_properties() {
       {"curve",
        {{"description", "puts the nodes on a smooth surface through the corners"},
         {"anyOf", {{{"type", "boolean"}}, object_of({{"feature_angle", {{"type", "number"}}}})}}}},
+      {"refine", described(integer(0, 8), "how often each triangle of the file is cut into four")},
       {"edge_length", described(positive, "largest edge of a generated mesh")},
       {"grading",
        {{"type", "number"},

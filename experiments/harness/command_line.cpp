@@ -89,6 +89,11 @@ void CommandLine::text(const std::string& name, std::string& value, const std::s
   parser_->add(name, value, help, !value.empty())->type_name(type);
 }
 
+void CommandLine::texts(const std::string& name, std::vector<std::string>& values, const std::string& help,
+                        const std::string& type) {
+  parser_->add(name, values, help)->type_name(type)->allow_extra_args(false);
+}
+
 void CommandLine::one_of(const std::string& name, const std::vector<std::string>& known, std::string& value,
                          const std::string& help) {
   parser_->add(name, value, help, true)->check(CLI::IsMember(known));

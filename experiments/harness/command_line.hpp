@@ -32,6 +32,9 @@ class CommandLine {
   void flag(const std::string& name, bool& value, const std::string& help);
   void text(const std::string& name, std::string& value, const std::string& help,
             const std::string& type = "TEXT");
+  /// Repeatable: --set a --set b.
+  void texts(const std::string& name, std::vector<std::string>& values, const std::string& help,
+             const std::string& type);
   void one_of(const std::string& name, const std::vector<std::string>& known, std::string& value,
               const std::string& help);
   /// A list of some of the known names, such as --flow a,b.

@@ -29,8 +29,19 @@ SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, con
 SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
                            double t, const Field& w);
 
-/// Raises the maxima of nodal_L2, nodal_H1 and nodal_H1_semi (kind "nodal"; or "lifted") of each quantity to
-/// these norms, and calls each(quantity, norm, value).
+/// Values and gradients in R^3 of a function at quadrature point q of a batch of elements, the points x.
+using FunctionInSpace =
+    std::function<void(const Batch& batch, int q, const Pack (&x)[3], FieldsAtPoints& out)>;
+
+/// Errors on the computed surface Gamma_h[x], by quadrature with the space's rule: the functions with nodal
+/// values w (N x c) less a function near the surface, of whose gradient the tangential part counts. Of a
+/// function whose surface Gamma_h[x] is only but for O(h^(k+1)), this adds as much to the L2 norm, and O(h^k)
+/// to the H1 seminorm: the orders of the interpolant.
+SquaredNorms quadrature_errors(const SurfaceSpace& space, const Field& x, const FunctionInSpace& exact,
+                               const Field& w);
+
+/// Raises the maxima of nodal_L2, nodal_H1 and nodal_H1_semi (kind "nodal"; or "lifted", "quadrature") of
+/// each quantity to these norms, and calls each(quantity, norm, value).
 void raise_maxima(const Quantities& quantities, const std::string& kind, const SquaredNorms& norms,
                   Errors& maxima,
                   const std::function<void(const std::string&, const std::string&, double)>& each = {});
