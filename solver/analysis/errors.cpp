@@ -17,37 +17,62 @@ SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, con
   return {e.cwiseProduct(Me).colwise().sum(), e.cwiseProduct(Ae).colwise().sum()};
 }
 
-SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
-                           double t, const Field& w) {
+namespace {
+
+/// The squared norms of the difference of the functions with nodal values w and the exact components, in
+/// points that point_of(batch, q) gives.
+template <class PointOf>
+SquaredNorms errors_in_points(const SurfaceSpace& space, const Field& x, const ExactEvolution& exact,
+                              double t, const Field& w, const PointOf& point_of) {
   const int components = exact.components(), nodes = space.batches().nodes();
   std::vector<Pack> nodal(components * nodes), L2(components), H1_semi(components);
   FieldsAtPoints at_points(components);
-  visit_lifted_points(space, x_star, exact.surface(t), [&](const Batch& batch, const LiftedPoints& points) {
-    if (points.q == 0)
-      for (int l = 0; l < components; ++l) space.batches().gather(batch, w, l, &nodal[l * nodes]);
-    exact.fields(t, points.on_surface, at_points);
-    const ElementBatches::Shape* shape = space.batches().shapes(points.q);
-    for (int l = 0; l < components; ++l) {
-      Pack e = -at_points.value[l], w_xi = {}, w_eta = {};
-      for (int a = 0; a < nodes; ++a) {
-        const Pack w_a = nodal[l * nodes + a];
-        e += shape[a].value * w_a;
-        w_xi += shape[a].dxi * w_a;
-        w_eta += shape[a].deta * w_a;
+  Batch batch;
+  for (int b = 0; b < space.batches().count(); ++b) {
+    space.batches().load(b, x, batch);
+    for (int l = 0; l < components; ++l) space.batches().gather(batch, w, l, &nodal[l * nodes]);
+    for (int q = 0; q < space.batches().points(); ++q) {
+      const LiftedPoints points = point_of(batch, q);
+      exact.fields(t, points.on_surface, at_points);
+      const ElementBatches::Shape* shape = space.batches().shapes(q);
+      for (int l = 0; l < components; ++l) {
+        Pack e = -at_points.value[l], w_xi = {}, w_eta = {};
+        for (int a = 0; a < nodes; ++a) {
+          const Pack w_a = nodal[l * nodes + a];
+          e += shape[a].value * w_a;
+          w_xi += shape[a].dxi * w_a;
+          w_eta += shape[a].deta * w_a;
+        }
+        Pack e_gradient[3];
+        for (int i = 0; i < 3; ++i)
+          e_gradient[i] = points.dual.xi[i] * w_xi + points.dual.eta[i] * w_eta - at_points.gradient[l][i];
+        L2[l] += points.dA * e * e;
+        H1_semi[l] += points.dA * dot(e_gradient, e_gradient);
       }
-      Pack e_gradient[3];
-      for (int i = 0; i < 3; ++i)
-        e_gradient[i] = points.dual.xi[i] * w_xi + points.dual.eta[i] * w_eta - at_points.gradient[l][i];
-      L2[l] += points.dA * e * e;
-      H1_semi[l] += points.dA * dot(e_gradient, e_gradient);
     }
-  });
+  }
   SquaredNorms norms{Eigen::VectorXd(components), Eigen::VectorXd(components)};
   for (int l = 0; l < components; ++l) {
     norms.L2[l] = sum_of_lanes(L2[l]);
     norms.H1_semi[l] = sum_of_lanes(H1_semi[l]);
   }
   return norms;
+}
+
+}  // namespace
+
+SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
+                           double t, const Field& w) {
+  const Surface surface = exact.surface(t);
+  return errors_in_points(space, x_star, exact, t, w, [&](const Batch& batch, int q) {
+    return lift(space.batches(), batch, q, surface);
+  });
+}
+
+SquaredNorms unlifted_errors(const SurfaceSpace& space, const Field& x, const ExactEvolution& exact, double t,
+                             const Field& w) {
+  return errors_in_points(space, x, exact, t, w,
+                          [&](const Batch& batch, int q) { return unlifted(space.batches(), batch, q); });
 }
 
 void raise_maxima(const Quantities& quantities, const std::string& kind, const SquaredNorms& norms,

@@ -29,6 +29,14 @@ SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, con
 SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
                            double t, const Field& w);
 
+/// The same on Gamma_h[x] itself, without a lift: the functions with nodal values w are compared with the
+/// exact components, which must be defined near the surface, in its quadrature points, and gradients with the
+/// part of theirs that is tangential to Gamma_h[x]. For nodes that are O(h^(k+1)) from the exact surface this
+/// differs from lifted_errors by O(h^(k+1)) in L2 and O(h^k) in H1: at orders of convergence it is as good,
+/// where the exact surface is not known.
+SquaredNorms unlifted_errors(const SurfaceSpace& space, const Field& x, const ExactEvolution& exact, double t,
+                             const Field& w);
+
 /// Raises the maxima of nodal_L2, nodal_H1 and nodal_H1_semi (kind "nodal"; or "lifted") of each quantity to
 /// these norms, and calls each(quantity, norm, value).
 void raise_maxima(const Quantities& quantities, const std::string& kind, const SquaredNorms& norms,
