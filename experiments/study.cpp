@@ -40,7 +40,7 @@ the smooth surface through the corners, else on the elements of the file. Step l
 times. All combinations are run.
 Errors, --against
   exact    the exact solution of the flow (mean curvature flow of sphere and angenent_torus, growing_sphere, ..), or the
-           formulas "exact": maxima over time of the nodal, lifted (exact solution) and quadrature (formula) norms
+           formulas "exact": maxima over time of the nodal and the lifted norms (unlifted where the exact surface is unknown)
   formula  the formulas "exact" only
   finest   the run with the largest level and step, at the end: norms by quadrature on the surface of the coarser run of
            the difference to the values in the closest points of the finest surface ("closest_L2", ..); x is the distance

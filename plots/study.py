@@ -11,7 +11,7 @@ from convergence import QUANTITIES, convergence_figure
 from script import run
 from table import TableError, succeeded
 
-KINDS = ("closest", "lifted", "quadrature", "nodal")  # the first that the table has is drawn
+KINDS = ("closest", "lifted", "unlifted", "nodal")  # the first that the table has is drawn
 NORMS = ("L2", "H1", "H1_semi")
 DEFAULT_DEGREE, DEFAULT_BDF = 2, 3  # those of evolve
 

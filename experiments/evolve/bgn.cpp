@@ -15,6 +15,7 @@ std::vector<Entry> bgn_entries() {
   };
   entry.highest_order = entry.order = entry.order_on_files = 1;
   entry.lumps_linear_elements = true;
+  entry.energy = "area";
   entry.can_shrink_to_nothing = entry.is_mean_curvature_flow = entry.slides_nodes = true;
   // In its first step, however small, this flow slides its nodes.
   entry.cure = [](const EvolveConfig& config) {

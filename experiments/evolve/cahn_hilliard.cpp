@@ -58,6 +58,7 @@ Entry cahn_hilliard_entry(const std::string& problem) {
   entry.problem = problem;
   entry.fields = "u, w";
   entry.time_power = 3;
+  entry.energy = "energy";
   entry.has_given_motion = true;
   entry.cure = smaller_steps_or_even_elements;
   return entry;
@@ -74,6 +75,7 @@ std::vector<Entry> cahn_hilliard_entries() {
   ellipsoid.parameters = {{Key::positive, "epsilon", 0.5, "width of the interface"}};
   ellipsoid.run = run_ellipsoid;
   ellipsoid.takes_adaptive_steps = false;
+  ellipsoid.moves_as_given = true;
   ellipsoid.check = [](const EvolveConfig& config, const std::string& source) {
     require_unit_sphere(config, source + ": problem ellipsoid");
   };

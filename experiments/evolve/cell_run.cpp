@@ -29,7 +29,7 @@ json output_in(const std::string& folder, const json& configuration, bool wants_
 
 /// Splits "u1_nodal_L2" into quantity and norm; false for what is no error.
 bool is_error(const std::string& name, std::string& quantity, std::string& norm) {
-  for (const char* kind : {"_nodal_", "_lifted_", "_quadrature_"}) {
+  for (const char* kind : {"_nodal_", "_lifted_", "_unlifted_"}) {
     const std::size_t place = name.find(kind);
     if (place == std::string::npos) continue;
     quantity = name.substr(0, place);

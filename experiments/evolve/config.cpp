@@ -145,7 +145,13 @@ void read_limits(const JsonReader& reader, EvolveConfig& config) {
 
 /// "stop": when a run ends before its last step.
 void read_stop(const JsonReader& reader, EvolveConfig& config) {
-  reader.accept_only({"speed", "seconds", "area"});
+  reader.accept_only({"speed", "energy_rate", "seconds", "area"});
+  if (reader.has("energy_rate")) {
+    if (config.entry->energy.empty())
+      throw InputError(reader.where() + ": found energy_rate, but " + words_for(*config.entry) +
+                       " has no energy; expected speed, area or seconds");
+    config.stop.energy_rate = positive_or(reader, "energy_rate", 0);
+  }
   if (reader.has("speed")) config.stop.speed = positive_or(reader, "speed", 0);
   if (reader.has("seconds")) config.stop.seconds = positive_or(reader, "seconds", 0);
   if (!reader.has("area")) return;
@@ -243,6 +249,16 @@ Keys read_keys(const json& given, const std::string& source) {
 }
 
 }  // namespace
+
+bool has_given_motion(const EvolveConfig& config) {
+  const json& formulas = config.formulas;
+  return config.entry->has_given_motion ||
+         (formulas.contains("kinetics") && !formulas.at("kinetics").contains("g"));
+}
+
+bool is_at_rest(const EvolveConfig& config) {
+  return has_given_motion(config) && !config.formulas.contains("velocity") && !config.entry->moves_as_given;
+}
 
 EvolveConfig checked_keys(const json& given, const std::string& source) {
   Keys keys = read_keys(given, source);

@@ -35,7 +35,7 @@ struct EvolveConfig {
   std::string initial_file, initial_flow;  ///< of "initial"; empty: the run starts from "mesh"
   nlohmann::json history;  ///< of initial_file (history.hpp), from which the run goes on; null: none
   struct {
-    std::optional<double> speed, seconds, area;  ///< see StopRule
+    std::optional<double> speed, energy_rate, seconds, area;  ///< see StopRule
   } stop;
   nlohmann::json formulas = nlohmann::json::object();  ///< what is given under the entry's formula keys
   std::set<std::string> initial;                       ///< names in `fields` that "initial" gives
@@ -48,6 +48,10 @@ struct EvolveConfig {
     std::optional<double> curvature_size, radius_ratio, normal_length;  ///< instead of the defaults
   } limits;                                                             ///< see RegularityLimits
 };
+
+/// Whether u alone evolves: the surface moves as given or is at rest.
+bool has_given_motion(const EvolveConfig& config);
+bool is_at_rest(const EvolveConfig& config);
 
 /// Reads a configuration and makes its mesh. Paths in it are relative to the working directory. Throws
 /// InputError, which names `source` and the key, for unknown keys (listing the known ones) and values of the

@@ -28,6 +28,7 @@ std::vector<Entry> dziuk_entries() {
   // With a higher order the nodes drift along surfaces that are rough, as meshes of files are, until elements
   // degenerate (DziukFlow).
   entry.order_on_files = 1;
+  entry.energy = "area";
   entry.can_shrink_to_nothing = entry.is_mean_curvature_flow = true;
   entry.cure = [](const EvolveConfig& config) {
     return "try \"flow\": \"bgn\"" + linear_elements(config) + "; on some meshes " + even_elements + " or " +

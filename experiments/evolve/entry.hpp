@@ -49,13 +49,17 @@ struct Entry {
   /// Sets of nodal values of a mesh file that a run can start from, as a whole; beside an exact surface, too.
   std::vector<std::vector<std::string>> starts = {};
   bool starts_beside_surface = false;
+  /// The same where they depend on the configuration.
+  std::function<std::vector<std::vector<std::string>>(const EvolveConfig&)> own_starts = {};
 
   bool evolves_curvature = false;  ///< nu and H, which can deviate from those of the surface
   bool can_shrink_to_nothing = false;
   bool is_mean_curvature_flow = false;  ///< for which the lifetime is bounded
   bool slides_nodes = false;            ///< in its first step
   bool has_given_motion = false;        ///< of the surface, or none: u alone evolves
+  bool moves_as_given = false;          ///< has_given_motion, and it is not at rest
   bool records_kappa_energy = false;    ///< in the series
+  std::string energy = "";              ///< the series that the flow decreases; "": it has none
   bool lumps_linear_elements = false;   ///< takes the vertices as quadrature points by default
 
   /// Advice when nu and H deviate from the surface, and when a run has ended at a singularity.

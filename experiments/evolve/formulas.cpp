@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "experiments/evolve/start.hpp"
 #include "solver/error.hpp"
 #include "solver/geometry/discrete_curvature.hpp"
 #include "solver/problems/formula_data.hpp"
@@ -27,10 +28,10 @@ bool is_initial_name(const std::string& name) {
   return name[0] == 'u' || name[0] == 'w';
 }
 
-/// The sets of scalar fields from which an entry's runs start.
-std::vector<std::vector<std::string>> possible_initial_values(const Entry& entry) {
+/// The sets of scalar fields from which a configuration's runs start.
+std::vector<std::vector<std::string>> possible_initial_values(const EvolveConfig& config) {
   std::vector<std::vector<std::string>> sets;
-  for (const auto& names : entry.starts)
+  for (const auto& names : starts_of(config))
     if (std::all_of(names.begin(), names.end(), is_initial_name)) sets.push_back(names);
   return sets;
 }
@@ -92,7 +93,7 @@ void take_initial_values(EvolveConfig& config) {
   const JsonReader reader(config.formulas.at("initial"), config.source + ": initial");
   std::set<std::string> given;
   for (const auto& item : config.formulas.at("initial").items()) given.insert(item.key());
-  if (const auto sets = possible_initial_values(*config.entry); !sets.empty()) {
+  if (const auto sets = possible_initial_values(config); !sets.empty()) {
     std::string expected;
     for (const auto& names : sets) {
       const std::set<std::string> set(names.begin(), names.end());
@@ -138,6 +139,9 @@ Velocity prescribed_velocity(const EvolveConfig& config, const SurfaceSpace* spa
   if (!config.formulas.contains(key)) return {};
   const json& given = config.formulas.at(key);
   const FormulaNames names = names_in_space_time(names_of(config));
+  if (!given.is_object() && !given.is_array())
+    throw InputError(config.source + ": " + key + ": found " + given.dump() +
+                     "; expected three formulas in [..], {\"normal\": ..} or {\"level_set\": ..}");
   if (given.is_object()) {
     const JsonReader reader(given, config.source + ": " + key);
     if (reader.only_key({"level_set", "normal"}) == "level_set")
@@ -157,13 +161,34 @@ Velocity prescribed_velocity(const EvolveConfig& config, const SurfaceSpace* spa
   return formula_velocity(components);
 }
 
+namespace {
+
+/// Nodes that follow a velocity from a time on, by Runge-Kutta steps of a size each.
+NodalMotion motion_from(double start, const Velocity& velocity, const Field& x, double tau) {
+  const Velocity since_start = [=](double t, const Field& at, Field& v) { velocity(start + t, at, v); };
+  const auto nodes = std::make_shared<MovingNodes>(since_start, x, tau);
+  return [nodes, start](double t) -> const Field& { return nodes->at(t - start); };
+}
+
+}  // namespace
+
 NodalMotion prescribed_motion(const EvolveConfig& config, const SurfaceSpace& space,
                               const UniformSteps& steps) {
   const Field& x = config.mesh.nodes;
   const Velocity velocity = prescribed_velocity(config, &space);
   if (!velocity) return [&x](double) -> const Field& { return x; };
-  const auto nodes = std::make_shared<MovingNodes>(velocity, x, steps.tau / steps.start.substeps_per_step);
-  return [nodes](double t) -> const Field& { return nodes->at(t); };
+  const NodalMotion fine =
+      motion_from(steps.start_time, velocity, x, steps.tau / steps.start.substeps_per_step);
+  const json& given = config.formulas.at("velocity");
+  if (!given.is_object() || !given.contains("normal")) return fine;
+  // A velocity along discrete normals costs a factorisation: substeps only where the starting values need
+  // them.
+  const double changes = steps.start_time + (steps.order - 1) * steps.tau;
+  return [=, coarse = NodalMotion()](double t) mutable -> const Field& {
+    if (t < changes + steps.tau / 2) return fine(t);
+    if (!coarse) coarse = motion_from(changes, velocity, fine(changes), steps.tau);
+    return coarse(t);
+  };
 }
 
 json formula_schema() {

@@ -49,6 +49,7 @@ std::string starts_of(const Entry& entry) {
     for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
     text += (text.empty() ? "" : "; or ") + list;
   }
+  if (entry.own_starts) text = entry.fields;
   if (text.empty()) return "";
   return "      starts from    " + text + " of the mesh file" +
          (entry.starts_beside_surface ? "" : ", without \"surface\"") + "\n";
@@ -59,6 +60,7 @@ std::string help_of(const Entry& entry) {
   if (!entry.problem.empty()) text += ", \"problem\": \"" + entry.problem + "\"";
   text += ": " + entry.help + "\n";
   if (!entry.fields.empty()) text += "      nodal fields   " + entry.fields + "\n";
+  if (!entry.energy.empty()) text += "      energy         \"" + entry.energy + "\" of the series\n";
   if (entry.highest_order == 1)
     text += "      bdf            1\n";
   else if (entry.order_on_files != entry.order)
@@ -102,6 +104,7 @@ std::string evolve_config_help() {
                                               surface
    "stop": {"speed": 1e-6,                    ends the run: stationary, the largest |v| in the nodes is below this (length/time
                                               of your data; cahn_hilliard: |du/dt|),
+            "energy_rate": 1e-6,              stationary: |dE/dt| of the flow's energy is below this, see Flows,
             "area": 0.1,                      area below 0.1 times that at the start; values above 1: area above,
             "seconds": 3600},                 wall-clock time of this command; default: none of these
    "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
@@ -143,9 +146,10 @@ A run starts from those nodal values of its mesh file ($NodeData of .msh, point 
 of .ply: H, or nu_x, nu_y, nu_z) that are listed with its flow ("starts from"), and reports this. t starts at 0, and defaults are relative to the length of this surface: to continue with
 the parameters of an earlier run, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H,
 h, worst_angle (degrees), worst_radius_ratio; if the flow has nu, also min_nu and max_nu; for willmore and surface_diffusion
-kappa_energy, 1/2 int |kappa|² of the surface itself; with "exact", of each field that has a formula, the errors u_nodal_L2,
-u_nodal_H1 and u_nodal_H1_semi of its nodal values, which can superconverge on even meshes, and u_quadrature_L2, .. by
-quadrature on the computed surface; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
+kappa_energy, 1/2 int |kappa|² of the surface itself; with "exact" the errors u_nodal_L2, u_nodal_H1 and
+u_nodal_H1_semi of each field that has a formula, and u_lifted_L2, .. by quadrature on the exact surface, where it is known (at
+rest, "velocity" or "exact" with a level_set), else u_unlifted_L2, .. on the discrete one; with "x" in it, the trajectories of
+the nodes (of x, y, z at the start, and t), in the exact nodes; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
 (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as field data TimeValue, step, flow and
 configuration (this file; texts are arrays of bytes). If the flow has no nu, then max_H, willmore_energy, and nu and H of
 the snapshots are those of the discrete surface.

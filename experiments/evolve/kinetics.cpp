@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reaction and diffusion of species with kinetics of the user's own, on a surface at rest, with a prescribed
 // motion, or driven by the species.
+#include <algorithm>
 #include <optional>
 
 #include "experiments/evolve/advice.hpp"
@@ -19,7 +20,13 @@ using nlohmann::json;
 struct Kinetics {
   std::vector<Formula> f;
   std::vector<double> diffusion;
-  std::optional<Formula> g;
+  std::optional<Formula> g, alpha, beta;  ///< of a surface that the species drive
+
+  int species() const { return static_cast<int>(f.size()); }
+  bool depends_on_curvature() const {
+    const auto has_H = [](const Formula& formula) { return formula.depends_on("H"); };
+    return (g && has_H(*g)) || std::any_of(f.begin(), f.end(), has_H);
+  }
 };
 
 std::vector<double> diffusion_in(const JsonReader& reader, std::size_t species) {
@@ -39,19 +46,40 @@ std::vector<double> diffusion_in(const JsonReader& reader, std::size_t species) 
 
 Kinetics kinetics_of(const EvolveConfig& config) {
   const JsonReader reader(config.formulas.at("kinetics"), config.source + ": kinetics");
-  reader.accept_only({"f", "diffusion", "g"});
+  reader.accept_only({"f", "diffusion", "g", "alpha", "beta"});
   const int species = static_cast<int>(reader.array("f").size());
   const FormulaNames names = names_of_kinetics(species, names_of(config));
+  FormulaNames names_with_H = names;
+  // Where H has a meaning in this file already it keeps it.
+  const bool is_own_name = names.constants.count("H") + names.definitions.count("H") > 0;
+  if (reader.has("g") && !is_own_name) names_with_H.variables.push_back("H");
   Kinetics kinetics;
-  kinetics.f = formulas_in(reader, "f", names);
+  kinetics.f = formulas_in(reader, "f", names_with_H);
   kinetics.diffusion = diffusion_in(reader, kinetics.f.size());
-  if (reader.has("g")) kinetics.g = formula_in(reader, "g", names);
+  if (reader.has("g")) kinetics.g = formula_in(reader, "g", names_with_H);
+  if (reader.has("alpha")) kinetics.alpha = formula_in(reader, "alpha", names);
+  if (reader.has("beta")) kinetics.beta = formula_in(reader, "beta", names);
   return kinetics;
+}
+
+std::vector<std::vector<std::string>> starts_of_kinetics(const EvolveConfig& config) {
+  const Kinetics kinetics = kinetics_of(config);
+  std::vector<std::vector<std::string>> starts = {concentration_names(kinetics.species())};
+  if (kinetics.g) {
+    starts.push_back(starts[0]);
+    starts[1].push_back("v");
+  }
+  return starts;
 }
 
 void check_kinetics(const EvolveConfig& config, const std::string& source) {
   const Kinetics kinetics = kinetics_of(config);
-  exact_values(config, concentration_names(static_cast<int>(kinetics.f.size())));
+  exact_values(config, concentration_names(kinetics.species()));
+  if ((kinetics.alpha || kinetics.beta) && !kinetics.g)
+    throw InputError(source + ": kinetics: found " + (kinetics.alpha ? "alpha" : "beta") +
+                     ", of the law of a surface that g drives, without g; expected g, too");
+  if (kinetics.beta && config.variant.is("law", "dynamic"))
+    throw InputError(source + ": kinetics: found beta, which the dynamic law has not; expected no key beta");
   const bool moves = bool(prescribed_velocity(config, nullptr));
   if (moves && kinetics.g)
     throw InputError(source +
@@ -62,17 +90,22 @@ void check_kinetics(const EvolveConfig& config, const std::string& source) {
 }
 
 Field initial_concentrations(const EvolveConfig& config, int species) {
-  Field u(config.mesh.nodes.rows(), species);
-  for (const std::string& name : concentration_names(species))
-    if (config.initial.count(name) == 0)
-      throw InputError(config.source + ": " + name + " has no initial values; expected \"initial\": {\"" +
-                       name + "\": a formula, ..}");
-  if (config.initial.size() != std::size_t(species))
-    throw InputError(config.source + format(": initial values of %zu concentrations, kinetics of %d",
-                                            config.initial.size(), species));
+  if (config.history.is_object()) return Field::Zero(config.mesh.nodes.rows(), species);  // is replaced
   const std::vector<std::string> names = concentration_names(species);
-  for (int l = 0; l < species; ++l) u.col(l) = *find(config.fields, names[l]);
-  return u;
+  for (const std::string& name : names)
+    if (!find(config.fields, name))
+      throw InputError(config.source + ": " + name + " has no initial values; expected \"initial\": {\"" +
+                       name + "\": a formula, ..}, or a file with nodal values " + name);
+  return start_values(config, names);
+}
+
+/// The nodal values of the file; without them the surface is at rest at the start.
+Field initial_velocity(const EvolveConfig& config, int species) {
+  std::vector<std::string> names = concentration_names(species);
+  names.push_back("v");
+  const Field u_v = start_values(config, names);
+  if (u_v.size() == 0) return Field::Zero(config.mesh.nodes.rows(), 3);
+  return u_v.rightCols(3);
 }
 
 void run_driven(const Run& run, const Kinetics& kinetics, Field u) {
@@ -84,12 +117,18 @@ void run_driven(const Run& run, const Kinetics& kinetics, Field u) {
   parameters.diffusion = kinetics.diffusion;
   std::vector<Formula> f_and_g = kinetics.f;
   f_and_g.push_back(*kinetics.g);
+  VariableLaw law;
+  if (kinetics.alpha) law.alpha = formula_nodal_function(*kinetics.alpha);
+  if (kinetics.beta) law.beta = formula_nodal_function(*kinetics.beta);
   const CoupledDiffusionVariant variant = {CoupledDiffusionVariant::extrapolated,
                                            config.variant.is("law", "regularised")
                                                ? CoupledDiffusionVariant::regularised
                                                : CoupledDiffusionVariant::dynamic};
-  run_flow(CoupledKinetics(run.space, formula_kinetics(f_and_g), parameters, variant, limits_of(run)), run,
-           coupled_diffusion_state(run.space, 0, x, Field::Zero(x.rows(), 3), std::move(u)));
+  run_flow(
+      CoupledKinetics(run.space, formula_kinetics(f_and_g), parameters, variant, limits_of(run), law,
+                      kinetics.depends_on_curvature()),
+      run,
+      coupled_diffusion_state(run.space, 0, x, initial_velocity(config, kinetics.species()), std::move(u)));
 }
 
 void run_prescribed(const Run& run, const Kinetics& kinetics, Field u) {
@@ -101,12 +140,12 @@ void run_prescribed(const Run& run, const Kinetics& kinetics, Field u) {
   ReactionDiffusion flow(run.space, formula_kinetics(kinetics.f), kinetics.diffusion, motion, velocity);
   std::function<ReactionDiffusionState(double)> exact_state;
   if (exact_u) exact_state = [&](double t) { return flow.state(t, exact_u(motion(t), t)); };
-  run_flow(flow, run, flow.state(0, std::move(u)), exact_state);
+  run_flow(flow, run, flow.state(steps.time(0), std::move(u)), exact_state);
 }
 
 void run_kinetics(const Run& run) {
   const Kinetics kinetics = kinetics_of(run.config);
-  Field u = initial_concentrations(run.config, static_cast<int>(kinetics.f.size()));
+  Field u = initial_concentrations(run.config, kinetics.species());
   if (kinetics.g)
     run_driven(run, kinetics, std::move(u));
   else
@@ -118,11 +157,14 @@ FormulaKey kinetics_key() {
   const json positive = {{"type", "number"}, {"exclusiveMinimum", 0}};
   const json properties = {{"f", {{"type", "array"}, {"items", formula}, {"minItems", 1}}},
                            {"diffusion", {{"type", "array"}, {"items", positive}, {"minItems", 1}}},
-                           {"g", formula}};
+                           {"g", formula},
+                           {"alpha", formula},
+                           {"beta", formula}};
   return {
       "kinetics",
       "{\"f\": [\"u2 - u1\", \"u1^2 - u2\"], \"diffusion\": [1, 10]}",
-      "f_l and D_l of each species; with \"g\": \"u1\" they drive the surface by (2.8), else see velocity",
+      "f_l and D_l of each species; with \"g\": \"u1\" they drive the surface by (2.8), else see velocity; "
+      "g and f may then use H, and \"alpha\", \"beta\" be formulas, too",
       {{"type", "object"},
        {"properties", properties},
        {"required", {"f", "diffusion"}},
@@ -145,6 +187,8 @@ std::vector<Entry> kinetics_entries() {
   entry.formulas = {kinetics_key(), velocity_key(), initial_key({"u1", "u2"})};
   entry.run = run_kinetics;
   entry.check = check_kinetics;
+  entry.own_starts = starts_of_kinetics;
+  entry.starts_beside_surface = true;
   entry.can_shrink_to_nothing = true;
   entry.cure = smaller_steps_or_even_elements;
   return {entry};

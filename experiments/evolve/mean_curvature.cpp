@@ -52,6 +52,7 @@ std::vector<Entry> mean_curvature_entries() {
   entry.run = run_mean_curvature;
   entry.exact_solution = exact_mean_curvature_solution;
   entry.starts = {{"nu", "H"}};
+  entry.energy = "area";
   entry.evolves_curvature = entry.can_shrink_to_nothing = entry.is_mean_curvature_flow = true;
   entry.curvature_cure =
       "try \"variant\": {\"reinitialise\": 0.05}, \"flow\": \"dziuk\", or " + resolving_mesh;

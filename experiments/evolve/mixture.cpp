@@ -28,8 +28,16 @@ namespace {
 
 using nlohmann::json;
 
+Mobility mobility_of(const EvolveConfig& config) {
+  if (!config.formulas.contains("mobility")) return {};
+  FormulaNames names = names_in_space_time(names_of(config));
+  names.variables.push_back("u");
+  return formula_mobility(formula_in(JsonReader(config.formulas, config.source), "mobility", names));
+}
+
 void check_mixture(const EvolveConfig& config, const std::string& source) {
   mixture_of(config);
+  mobility_of(config);
   exact_values(config, {"u", "w"});
   prescribed_velocity(config, nullptr, "tangential");
   if (prescribed_velocity(config, nullptr) && config.adaptive)
@@ -50,16 +58,21 @@ void run_mixture(const Run& run) {
       return cahn_hilliard_state(run.space, t, x, u_w.col(0), u_w.col(1));
     };
   const Field& x = config.mesh.nodes;
-  const Field u = start_values(config, {"u"}), u_w = start_values(config, {"u", "w"});
+  const double t0 = steps.time(0);
+  Field u = start_values(config, {"u"});
+  const Field u_w = start_values(config, {"u", "w"});
+  if (config.history.is_object()) u.setZero(x.rows(), 1);  // is replaced, as is theta
   if (u.size() == 0)
-    throw InputError(config.source + ": u has no initial values; expected \"initial\": {\"u\": a formula}");
+    throw InputError(config.source +
+                     ": u has no initial values; expected \"initial\": {\"u\": a formula}, "
+                     "or a file with nodal values u");
   const CahnHilliardState start = u_w.size() > 0
-                                      ? cahn_hilliard_state(run.space, 0, x, u_w.col(0), u_w.col(1))
-                                      : cahn_hilliard_start(run.space, mixture, epsilon, 0, x, u);
+                                      ? cahn_hilliard_state(run.space, t0, x, u_w.col(0), u_w.col(1))
+                                      : cahn_hilliard_start(run.space, mixture, epsilon, t0, x, u);
   Field theta;
   if (config.variant.truth("theta")) theta = cahn_hilliard_theta(run.space, mixture, epsilon, start);
   run_flow(CahnHilliard(run.space, mixture, motion, epsilon, theta,
-                        prescribed_velocity(config, &run.space, "tangential")),
+                        prescribed_velocity(config, &run.space, "tangential"), mobility_of(config)),
            run, start, exact_state);
 }
 
@@ -81,14 +94,19 @@ std::vector<Entry> mixture_entries() {
   tangential.name = "tangential";
   tangential.example = "[\"0\", \"z*t\", \"-y*t\"]";
   tangential.help = "the part of the velocity that the nodes have, but not the material; default: none";
-  entry.formulas = {{"potential", "\"(u^2-1)^2/4\"", "F(u), double-well by default", formula},
-                    velocity_key(),
-                    tangential,
-                    {"source", "\"x*y\"", "b of bk22 (9.1), of x, y, z, t", formula},
-                    initial_key({"u"})};
+  entry.formulas = {
+      {"potential", "\"(u^2-1)^2/4\"", "F(u), double-well by default", formula},
+      {"mobility", "\"max(1 - u^2, 0)\"",
+       "m of d•u + u div v - div(m grad w), of x, y, z, t, u, not negative; 1 by default", formula},
+      velocity_key(),
+      tangential,
+      {"source", "\"x*y\"", "b of bk22 (9.1), of x, y, z, t", formula},
+      initial_key({"u"})};
   entry.run = run_mixture;
   entry.check = check_mixture;
   entry.time_power = 3;
+  entry.has_given_motion = true;
+  entry.energy = "energy";
   entry.starts = {{"u"}, {"u", "w"}};
   entry.starts_beside_surface = true;
   entry.cure = smaller_steps_or_even_elements;

@@ -131,9 +131,11 @@ json common_properties() {
       {"every", described(integer(0, 100000000), "snapshots at every n-th step")},
       {"every_time", described(positive, "snapshots at multiples of this time")},
       {"times", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
-  const json stop = {{"speed", described(positive, "stationary: largest |v| in the nodes below this")},
-                     {"area", described(positive, "area relative to that at the start")},
-                     {"seconds", described(positive, "of wall-clock time")}};
+  const json stop = {
+      {"speed", described(positive, "stationary: largest |v| in the nodes below this")},
+      {"energy_rate", described(positive, "stationary: |dE/dt| of the flow's energy below this")},
+      {"area", described(positive, "area relative to that at the start")},
+      {"seconds", described(positive, "of wall-clock time")}};
   const json limits = {{"curvature_size", positive},
                        {"radius_ratio", {{"type", "number"}, {"exclusiveMinimum", -1}}},
                        {"normal_length", {{"type", "number"}, {"exclusiveMinimum", 1}}}};

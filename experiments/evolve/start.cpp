@@ -9,6 +9,10 @@
 
 namespace esfem {
 
+std::vector<std::vector<std::string>> starts_of(const EvolveConfig& config) {
+  return config.entry->own_starts ? config.entry->own_starts(config) : config.entry->starts;
+}
+
 namespace {
 
 using Names = std::vector<std::string>;
@@ -16,7 +20,7 @@ using Names = std::vector<std::string>;
 /// What a run can start from: sets of nodal values, which the file must have as a whole.
 std::vector<Names> possible_starts(const EvolveConfig& config) {
   if (config.surface && !config.entry->starts_beside_surface) return {};
-  return config.entry->starts;
+  return starts_of(config);
 }
 
 bool has_all(const EvolveConfig& config, const Names& names) {
@@ -101,9 +105,10 @@ void require_unit_sphere(const EvolveConfig& config, const std::string& what) {
 }
 
 void require_start(const EvolveConfig& config, const std::string& where) {
-  if (config.history.is_object() || config.entry->starts.empty()) return;
+  const std::vector<Names> starts = starts_of(config);
+  if (config.history.is_object() || starts.empty()) return;
   std::string expected, found;
-  for (const Names& names : config.entry->starts) {
+  for (const Names& names : starts) {
     if (has_all(config, names)) return;
     expected += expected.empty() ? "" : " or ";
     for (const std::string& name : names) expected += (&name == &names.front() ? "" : ", ") + name;

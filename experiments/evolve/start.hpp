@@ -9,6 +9,9 @@
 
 namespace esfem {
 
+/// The sets of nodal values that the runs of a configuration can start from.
+std::vector<std::vector<std::string>> starts_of(const EvolveConfig& config);
+
 /// The nodal values of the mesh file under these names, side by side (N x ..), where the run starts from
 /// them; else empty: the file does not have them all, the flow does not evolve them, or they come from an
 /// exact surface. Throws InputError for values that are not finite, have other than the flow's number of

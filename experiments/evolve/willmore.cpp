@@ -88,8 +88,10 @@ std::vector<Entry> willmore_entries() {
   Entry willmore = willmore_entry(willmore_law()),
         surface_diffusion = willmore_entry(surface_diffusion_law());
   willmore.flow = "willmore";
+  willmore.energy = "willmore_energy";
   willmore.help = "Willmore flow by kll21 (3.4)-(3.5): V = Delta H + Q, which decreases 1/2 int H²";
   surface_diffusion.flow = "surface_diffusion";
+  surface_diffusion.energy = "area";
   surface_diffusion.help =
       "surface diffusion by kll21 (3.4)-(3.5) with Q = 0: V = Delta H, which keeps the volume";
   return {willmore, surface_diffusion};

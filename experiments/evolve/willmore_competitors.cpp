@@ -12,6 +12,7 @@ Entry first_order_entry(const std::string& flow) {
   entry.flow = flow;
   entry.highest_order = entry.order = entry.order_on_files = 1;
   entry.time_power = 4;
+  entry.energy = "willmore_energy";
   entry.records_kappa_energy = true;
   entry.cure = smaller_steps_or_even_elements;
   return entry;

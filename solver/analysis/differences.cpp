@@ -55,17 +55,21 @@ Errors differences(const DiscreteFunctions& coarse, const DiscreteFunctions& fin
   const Evaluation evaluation(fine.mesh, other);
   Eigen::RowVectorXd value;
   Eigen::MatrixXd gradient;
-  const FunctionInSpace finer = [&](const Batch&, int, const Pack(&x)[3], FieldsAtPoints& out) {
+  ExactEvolution finer;
+  finer.quantities = quantities;
+  finer.fields = [&](double, const SurfacePoints& at, FieldsAtPoints& out) {
     for (int lane = 0; lane < pack_size; ++lane) {
-      evaluation.at({x[0][lane], x[1][lane], x[2][lane]}, value, gradient);
+      evaluation.at(lane_of(at.y, lane), value, gradient);
       for (int l = 0; l < value.size(); ++l) {
+        const Vec3 in_space = gradient.col(l), normal = lane_of(at.normal, lane);
+        const Vec3 tangential = in_space - in_space.dot(normal) * normal;
         out.value[l][lane] = value[l];
-        for (int i = 0; i < 3; ++i) out.gradient[l][i][lane] = gradient(i, l);
+        for (int i = 0; i < 3; ++i) out.gradient[l][i][lane] = tangential[i];
       }
     }
   };
   Errors errors;
-  raise_maxima({space, quantities}, "closest", quadrature_errors(space, coarse.mesh.nodes, finer, mine),
+  raise_maxima({space, quantities}, "closest", unlifted_errors(space, coarse.mesh.nodes, finer, 0, mine),
                errors);
   return errors;
 }

@@ -19,92 +19,60 @@ SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, con
 
 namespace {
 
-/// Squared L2 norm and H1 seminorm of w less something else, component by component, point by point.
-class ErrorSums {
- public:
-  ErrorSums(const SurfaceSpace& space, const Field& w)
-      : batches_(space.batches()), w_(w), nodal_(w.cols() * batches_.nodes()), L2_(w.cols()), H1_(w.cols()) {}
-
-  /// The nodal values of w in the elements of a batch: before its points.
-  void load(const Batch& batch) {
-    for (int l = 0; l < w_.cols(); ++l) batches_.gather(batch, w_, l, &nodal_[l * batches_.nodes()]);
-  }
-
-  /// other: values and tangential gradients at point q, which counts dA.
-  void add(int q, const Pack& dA, const DualTangents& dual, const FieldsAtPoints& other) {
-    const ElementBatches::Shape* shape = batches_.shapes(q);
-    for (int l = 0; l < w_.cols(); ++l) {
-      Pack e = -other.value[l], w_xi = {}, w_eta = {};
-      for (int a = 0; a < batches_.nodes(); ++a) {
-        const Pack w_a = nodal_[l * batches_.nodes() + a];
-        e += shape[a].value * w_a;
-        w_xi += shape[a].dxi * w_a;
-        w_eta += shape[a].deta * w_a;
+/// The squared norms of the difference of the functions with nodal values w and the exact components, in
+/// points that point_of(batch, q) gives.
+template <class PointOf>
+SquaredNorms errors_in_points(const SurfaceSpace& space, const Field& x, const ExactEvolution& exact,
+                              double t, const Field& w, const PointOf& point_of) {
+  const int components = exact.components(), nodes = space.batches().nodes();
+  std::vector<Pack> nodal(components * nodes), L2(components), H1_semi(components);
+  FieldsAtPoints at_points(components);
+  Batch batch;
+  for (int b = 0; b < space.batches().count(); ++b) {
+    space.batches().load(b, x, batch);
+    for (int l = 0; l < components; ++l) space.batches().gather(batch, w, l, &nodal[l * nodes]);
+    for (int q = 0; q < space.batches().points(); ++q) {
+      const LiftedPoints points = point_of(batch, q);
+      exact.fields(t, points.on_surface, at_points);
+      const ElementBatches::Shape* shape = space.batches().shapes(q);
+      for (int l = 0; l < components; ++l) {
+        Pack e = -at_points.value[l], w_xi = {}, w_eta = {};
+        for (int a = 0; a < nodes; ++a) {
+          const Pack w_a = nodal[l * nodes + a];
+          e += shape[a].value * w_a;
+          w_xi += shape[a].dxi * w_a;
+          w_eta += shape[a].deta * w_a;
+        }
+        Pack e_gradient[3];
+        for (int i = 0; i < 3; ++i)
+          e_gradient[i] = points.dual.xi[i] * w_xi + points.dual.eta[i] * w_eta - at_points.gradient[l][i];
+        L2[l] += points.dA * e * e;
+        H1_semi[l] += points.dA * dot(e_gradient, e_gradient);
       }
-      Pack e_gradient[3];
-      for (int i = 0; i < 3; ++i)
-        e_gradient[i] = dual.xi[i] * w_xi + dual.eta[i] * w_eta - other.gradient[l][i];
-      L2_[l] += dA * e * e;
-      H1_[l] += dA * dot(e_gradient, e_gradient);
     }
   }
-
-  SquaredNorms norms() const {
-    SquaredNorms norms{Eigen::VectorXd(w_.cols()), Eigen::VectorXd(w_.cols())};
-    for (int l = 0; l < w_.cols(); ++l) {
-      norms.L2[l] = sum_of_lanes(L2_[l]);
-      norms.H1_semi[l] = sum_of_lanes(H1_[l]);
-    }
-    return norms;
+  SquaredNorms norms{Eigen::VectorXd(components), Eigen::VectorXd(components)};
+  for (int l = 0; l < components; ++l) {
+    norms.L2[l] = sum_of_lanes(L2[l]);
+    norms.H1_semi[l] = sum_of_lanes(H1_semi[l]);
   }
-
- private:
-  const ElementBatches& batches_;
-  const Field& w_;
-  std::vector<Pack> nodal_, L2_, H1_;
-};
+  return norms;
+}
 
 }  // namespace
 
 SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
                            double t, const Field& w) {
-  ErrorSums sums(space, w);
-  FieldsAtPoints at_points(exact.components());
-  visit_lifted_points(space, x_star, exact.surface(t), [&](const Batch& batch, const LiftedPoints& points) {
-    if (points.q == 0) sums.load(batch);
-    exact.fields(t, points.on_surface, at_points);
-    sums.add(points.q, points.dA, points.dual, at_points);
+  const Surface surface = exact.surface(t);
+  return errors_in_points(space, x_star, exact, t, w, [&](const Batch& batch, int q) {
+    return lift(space.batches(), batch, q, surface);
   });
-  return sums.norms();
 }
 
-SquaredNorms quadrature_errors(const SurfaceSpace& space, const Field& x, const FunctionInSpace& exact,
-                               const Field& w) {
-  const ElementBatches& batches = space.batches();
-  ErrorSums sums(space, w);
-  FieldsAtPoints at_points(w.cols());
-  Batch batch;
-  BatchPoint point;
-  for (int b = 0; b < batches.count(); ++b) {
-    batches.load(b, x, batch);
-    sums.load(batch);
-    for (int q = 0; q < batches.points(); ++q) {
-      batches.require_regular(batches.evaluate(batch, q, point), batch);
-      Pack place[3] = {};
-      for (int a = 0; a < batches.nodes(); ++a)
-        for (int i = 0; i < 3; ++i) place[i] += batches.shapes(q)[a].value * batch.x[a][i];
-      exact(batch, q, place, at_points);
-      // Tangential gradients: (I - nu nuT) grad, with the normal n = |n| nu of the element.
-      for (std::array<Pack, 3>& gradient : at_points.gradient) {
-        const Pack along =
-            (gradient[0] * point.normal[0] + gradient[1] * point.normal[1] + gradient[2] * point.normal[2]) *
-            point.inverse_jacobian * point.inverse_jacobian;
-        for (int i = 0; i < 3; ++i) gradient[i] -= along * point.normal[i];
-      }
-      sums.add(q, batch.one * batches.weight(q) * point.jacobian, DualTangents(point), at_points);
-    }
-  }
-  return sums.norms();
+SquaredNorms unlifted_errors(const SurfaceSpace& space, const Field& x, const ExactEvolution& exact, double t,
+                             const Field& w) {
+  return errors_in_points(space, x, exact, t, w,
+                          [&](const Batch& batch, int q) { return unlifted(space.batches(), batch, q); });
 }
 
 void raise_maxima(const Quantities& quantities, const std::string& kind, const SquaredNorms& norms,

@@ -29,19 +29,16 @@ SquaredNorms nodal_norms(const SymmetricMatrix& M, const SymmetricMatrix& A, con
 SquaredNorms lifted_errors(const SurfaceSpace& space, const Field& x_star, const ExactEvolution& exact,
                            double t, const Field& w);
 
-/// Values and gradients in R^3 of a function at quadrature point q of a batch of elements, the points x.
-using FunctionInSpace =
-    std::function<void(const Batch& batch, int q, const Pack (&x)[3], FieldsAtPoints& out)>;
+/// The same on Gamma_h[x] itself, without a lift: the functions with nodal values w are compared with the
+/// exact components, which must be defined near the surface, in its quadrature points, and gradients with the
+/// part of theirs that is tangential to Gamma_h[x]. For nodes that are O(h^(k+1)) from the exact surface this
+/// differs from lifted_errors by O(h^(k+1)) in L2 and O(h^k) in H1: at orders of convergence it is as good,
+/// where the exact surface is not known.
+SquaredNorms unlifted_errors(const SurfaceSpace& space, const Field& x, const ExactEvolution& exact, double t,
+                             const Field& w);
 
-/// Errors on the computed surface Gamma_h[x], by quadrature with the space's rule: the functions with nodal
-/// values w (N x c) less a function near the surface, of whose gradient the tangential part counts. Of a
-/// function whose surface Gamma_h[x] is only but for O(h^(k+1)), this adds as much to the L2 norm, and O(h^k)
-/// to the H1 seminorm: the orders of the interpolant.
-SquaredNorms quadrature_errors(const SurfaceSpace& space, const Field& x, const FunctionInSpace& exact,
-                               const Field& w);
-
-/// Raises the maxima of nodal_L2, nodal_H1 and nodal_H1_semi (kind "nodal"; or "lifted", "quadrature") of
-/// each quantity to these norms, and calls each(quantity, norm, value).
+/// Raises the maxima of nodal_L2, nodal_H1 and nodal_H1_semi (kind "nodal"; or "lifted") of each quantity to
+/// these norms, and calls each(quantity, norm, value).
 void raise_maxima(const Quantities& quantities, const std::string& kind, const SquaredNorms& norms,
                   Errors& maxima,
                   const std::function<void(const std::string&, const std::string&, double)>& each = {});

@@ -50,6 +50,18 @@ inline LiftedPoints lift(const ElementBatches& batches, const Batch& batch, int 
   return {q, points, batch.one * batches.weight(q) * lifted.jacobian, DualTangents(lifted)};
 }
 
+/// The quadrature point q of Gamma_h[x] itself: what lift has on the exact surface, without a Weingarten map.
+inline LiftedPoints unlifted(const ElementBatches& batches, const Batch& batch, int q) {
+  SurfacePoints points = {};
+  const ElementBatches::Shape* shape = batches.shapes(q);
+  for (int a = 0; a < batches.nodes(); ++a)
+    for (int i = 0; i < 3; ++i) points.y[i] += shape[a].value * batch.x[a][i];
+  BatchPoint geometry;
+  batches.require_regular(batches.evaluate(batch, q, geometry), batch);
+  for (int i = 0; i < 3; ++i) points.normal[i] = geometry.normal[i] * geometry.inverse_jacobian;
+  return {q, points, batch.one * batches.weight(q) * geometry.jacobian, DualTangents(geometry)};
+}
+
 /// Calls visit(const Batch&, const LiftedPoints&) for the quadrature points of Gamma_h[x], lifted to
 /// `surface`; batch by batch, in each in the order of the rule's points.
 template <class Visit>

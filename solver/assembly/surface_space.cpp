@@ -66,11 +66,11 @@ SurfaceSpace::SurfaceSpace(const Mesh& mesh, const Quadrature& rule)
       pattern_(std::make_shared<SparsityPattern>(
           element_pattern(mesh.elements, static_cast<int>(mesh.nodes.rows())))),
       batches_(mesh.elements, mesh.degree, rule) {
-  const std::vector<std::pair<int, int>> pairs = node_pairs(batches_.nodes());
-  entries_ = static_cast<int>(pairs.size());
+  pairs_ = node_pairs(batches_.nodes());
+  entries_ = static_cast<int>(pairs_.size());
   off_diagonals_ = entries_ - batches_.nodes();
   for (int batch = 0; batch < batches_.count(); ++batch)
-    for (const auto& [a, b] : pairs)
+    for (const auto& [a, b] : pairs_)
       for (int lane = 0; lane < pack_size; ++lane) {
         const int element = batches_.element(batch, lane);
         position_.push_back(pattern_->entry(elements_(element, a), elements_(element, b)));
@@ -79,13 +79,13 @@ SurfaceSpace::SurfaceSpace(const Mesh& mesh, const Quadrature& rule)
   const int points = batches_.points();
   mass_table_ = blocked_table(entries_, points, [&](int row, int q) {
     const ElementBatches::Shape* shape = batches_.shapes(q);
-    return shape[pairs[row].first].value * shape[pairs[row].second].value;
+    return shape[pairs_[row].first].value * shape[pairs_[row].second].value;
   });
   // grad phi_a . grad phi_b = sum over i, j of (inverse metric)_ij d_i phi_a d_j phi_b: terms 11, 12, 22 a
   // point.
   stiffness_table_ = blocked_table(off_diagonals_, 3 * points, [&](int row, int term) {
-    const ElementBatches::Shape& a = batches_.shapes(term / 3)[pairs[row].first];
-    const ElementBatches::Shape& b = batches_.shapes(term / 3)[pairs[row].second];
+    const ElementBatches::Shape& a = batches_.shapes(term / 3)[pairs_[row].first];
+    const ElementBatches::Shape& b = batches_.shapes(term / 3)[pairs_[row].second];
     if (term % 3 == 0) return a.dxi * b.dxi;
     return term % 3 == 1 ? a.dxi * b.deta + a.deta * b.dxi : a.deta * b.deta;
   });
@@ -119,7 +119,6 @@ void SurfaceSpace::assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix&
   A.values.setZero();
   double* mass = M.values.data();
   double* stiffness = A.values.data();
-  const std::vector<std::pair<int, int>> pairs = node_pairs(batches_.nodes());
   Batch batch;
   BatchPoint point;
   for (int b = 0; b < batches_.count(); ++b) {
@@ -129,19 +128,11 @@ void SurfaceSpace::assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix&
       regular &= batches_.evaluate(batch, q, point);
       const Pack weight = batch.one * batches_.weight(q);
       mass_point_[q] = weight * point.jacobian;
-      const Pack scale = weight * point.inverse_jacobian;
-      stiffness_point_[3 * q] = scale * dot(point.tangent_eta, point.tangent_eta);
-      stiffness_point_[3 * q + 1] = -scale * dot(point.tangent_xi, point.tangent_eta);
-      stiffness_point_[3 * q + 2] = scale * dot(point.tangent_xi, point.tangent_xi);
+      set_stiffness_point(q, weight, point);
     }
     batches_.require_regular(regular, batch);
 
-    sum_table(stiffness_table_, stiffness_point_, off_diagonals_, stiffness_entry_);
-    for (int a = 0; a < batches_.nodes(); ++a) stiffness_entry_[off_diagonals_ + a] = Pack{};
-    for (int k = 0; k < off_diagonals_; ++k) {
-      stiffness_entry_[off_diagonals_ + pairs[k].first] -= stiffness_entry_[k];
-      stiffness_entry_[off_diagonals_ + pairs[k].second] -= stiffness_entry_[k];
-    }
+    sum_stiffness();
     sum_table(mass_table_, mass_point_, entries_, mass_entry_);
     const int* position = &position_[b * entries_ * pack_size];
     for (int k = 0; k < entries_; ++k, position += pack_size) {
@@ -153,12 +144,30 @@ void SurfaceSpace::assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix&
   }
 }
 
-void SurfaceSpace::add_mass(const Batch& batch, SymmetricMatrix& M) const {
-  sum_table(mass_table_, mass_point_, entries_, mass_entry_);
+void SurfaceSpace::sum_stiffness() const {
+  sum_table(stiffness_table_, stiffness_point_, off_diagonals_, stiffness_entry_);
+  for (int a = 0; a < batches_.nodes(); ++a) stiffness_entry_[off_diagonals_ + a] = Pack{};
+  for (int k = 0; k < off_diagonals_; ++k) {
+    stiffness_entry_[off_diagonals_ + pairs_[k].first] -= stiffness_entry_[k];
+    stiffness_entry_[off_diagonals_ + pairs_[k].second] -= stiffness_entry_[k];
+  }
+}
+
+void SurfaceSpace::add_entries(const Batch& batch, const std::vector<Pack>& entry,
+                               SymmetricMatrix& out) const {
   const int* position = &position_[batch.number * entries_ * pack_size];
   for (int k = 0; k < entries_; ++k)
-    for (int lane = 0; lane < pack_size; ++lane)
-      M.values[position[pack_size * k + lane]] += mass_entry_[k][lane];
+    for (int lane = 0; lane < pack_size; ++lane) out.values[position[pack_size * k + lane]] += entry[k][lane];
+}
+
+void SurfaceSpace::add_stiffness(const Batch& batch, SymmetricMatrix& A) const {
+  sum_stiffness();
+  add_entries(batch, stiffness_entry_, A);
+}
+
+void SurfaceSpace::add_mass(const Batch& batch, SymmetricMatrix& M) const {
+  sum_table(mass_table_, mass_point_, entries_, mass_entry_);
+  add_entries(batch, mass_entry_, M);
 }
 
 template <class Function>

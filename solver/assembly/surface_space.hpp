@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "solver/assembly/element_batches.hpp"
@@ -62,6 +63,11 @@ class SurfaceSpace {
   void assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight,
                               SymmetricMatrix& out) const;
 
+  /// Integral of weight grad phi_i . grad phi_j, otherwise as the one above.
+  template <int inputs, class Weight>
+  void assemble_weighted_stiffness(const Field& x, const Field& u, const Weight& weight,
+                                   SymmetricMatrix& out) const;
+
   /// Load functionals: out (N x outputs) = integral of value phi_j + flux . grad phi_j over Gamma_h[x], where
   /// integrand(const PointData<inputs>&, Integrand<outputs, fluxes>&) fills value and flux from u (N x
   /// inputs).
@@ -82,8 +88,24 @@ class SurfaceSpace {
   /// Integral of function(batch, shapes, point) against dxi deta.
   template <class Function>
   double integrate(const Field& x, const Function& function) const;
+  /// Sums weight(point data) over the points of each batch: keep(q, rule's weight, value, point), and then
+  /// add(batch, out).
+  template <int inputs, class Weight, class Keep, class Add>
+  void assemble_weighted(const Field& x, const Field& u, const Weight& weight, const Keep& keep,
+                         const Add& add, SymmetricMatrix& out) const;
   /// Element mass matrices of a batch from mass_point_, added to M.
   void add_mass(const Batch& batch, SymmetricMatrix& M) const;
+  /// The metric terms of a quadrature point, for gradients that are weighted with the weight of the point.
+  void set_stiffness_point(int q, const Pack& weight, const BatchPoint& point) const {
+    const Pack scale = weight * point.inverse_jacobian;
+    stiffness_point_[3 * q] = scale * dot(point.tangent_eta, point.tangent_eta);
+    stiffness_point_[3 * q + 1] = -scale * dot(point.tangent_xi, point.tangent_eta);
+    stiffness_point_[3 * q + 2] = scale * dot(point.tangent_xi, point.tangent_xi);
+  }
+  /// stiffness_entry_ from stiffness_point_: rows sum to zero.
+  void sum_stiffness() const;
+  void add_stiffness(const Batch& batch, SymmetricMatrix& A) const;
+  void add_entries(const Batch& batch, const std::vector<Pack>& entry, SymmetricMatrix& out) const;
 
   int degree_;
   Connectivity elements_;
@@ -91,9 +113,10 @@ class SurfaceSpace {
   double length_;
   std::shared_ptr<const SparsityPattern> pattern_;
   ElementBatches batches_;
-  int off_diagonals_, entries_;     ///< number in the lower triangle of an element matrix
-  std::vector<int> position_;       ///< batches x entries x lanes: where it goes in M.values
-  std::vector<double> mass_table_;  ///< see pair_table in the .cpp
+  int off_diagonals_, entries_;             ///< number in the lower triangle of an element matrix
+  std::vector<std::pair<int, int>> pairs_;  ///< local nodes of these entries
+  std::vector<int> position_;               ///< batches x entries x lanes: where it goes in M.values
+  std::vector<double> mass_table_;          ///< see pair_table in the .cpp
   std::vector<double> stiffness_table_;
   mutable std::vector<Pack> mass_point_;       ///< work space: one integration weight a point
   mutable std::vector<Pack> stiffness_point_;  ///< work space: three metric terms a point

@@ -74,9 +74,9 @@ void SurfaceSpace::assemble_load(const Field& x, const Field& u, const Function&
   }
 }
 
-template <int inputs, class Weight>
-void SurfaceSpace::assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight,
-                                          SymmetricMatrix& out) const {
+template <int inputs, class Weight, class Keep, class Add>
+void SurfaceSpace::assemble_weighted(const Field& x, const Field& u, const Weight& weight, const Keep& keep,
+                                     const Add& add, SymmetricMatrix& out) const {
   require_rows(x, 3);
   require_rows(u, inputs);
   require_matrix(out);
@@ -91,11 +91,31 @@ void SurfaceSpace::assemble_weighted_mass(const Field& x, const Field& u, const 
     for (int q = 0; q < batches_.points(); ++q) {
       regular &= batches_.evaluate(batch, q, geometry);
       const PointData<inputs> data = point_data<inputs>(batch, q, geometry, DualTangents(geometry), nodal);
-      mass_point_[q] = batch.one * batches_.weight(q) * geometry.jacobian * weight(data);
+      keep(q, batch.one * batches_.weight(q), weight(data), geometry);
     }
     batches_.require_regular(regular, batch);
-    add_mass(batch, out);
+    add(batch, out);
   }
+}
+
+template <int inputs, class Weight>
+void SurfaceSpace::assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight,
+                                          SymmetricMatrix& out) const {
+  const auto keep = [this](int q, const Pack& rule, const Pack& value, const BatchPoint& point) {
+    mass_point_[q] = rule * point.jacobian * value;
+  };
+  assemble_weighted<inputs>(
+      x, u, weight, keep, [this](const Batch& batch, SymmetricMatrix& M) { add_mass(batch, M); }, out);
+}
+
+template <int inputs, class Weight>
+void SurfaceSpace::assemble_weighted_stiffness(const Field& x, const Field& u, const Weight& weight,
+                                               SymmetricMatrix& out) const {
+  const auto keep = [this](int q, const Pack& rule, const Pack& value, const BatchPoint& point) {
+    set_stiffness_point(q, rule * value, point);
+  };
+  assemble_weighted<inputs>(
+      x, u, weight, keep, [this](const Batch& batch, SymmetricMatrix& A) { add_stiffness(batch, A); }, out);
 }
 
 }  // namespace esfem

@@ -91,4 +91,10 @@ double SymmetricMatrix::energy(const Field& e) const {
   return sum;
 }
 
+double SymmetricMatrix::trace() const {
+  double sum = 0;
+  for (int j = 0; j < pattern->size; ++j) sum += values[pattern->column_start[j]];
+  return sum;
+}
+
 }  // namespace esfem

@@ -32,6 +32,7 @@ struct SymmetricMatrix {
   Field operator*(const Field& u) const;
   /// trace(eᵀ (this) e), the square of the papers' norms (7.1)-(7.3) of kll19, summed over components.
   double energy(const Field& e) const;
+  double trace() const;
 };
 
 }  // namespace esfem

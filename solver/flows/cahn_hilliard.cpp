@@ -10,18 +10,25 @@
 namespace esfem {
 
 CahnHilliardScheme::CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon,
-                                       Field theta, Velocity tangential)
+                                       Field theta, Velocity tangential, Mobility mobility)
     : space_(space),
       motion_(std::move(motion)),
       epsilon_(epsilon),
       theta_(std::move(theta)),
       tangential_(std::move(tangential)),
+      mobility_(std::move(mobility)),
       M_(space.matrix()),
-      A_(space.matrix()),
-      block_(space.pattern()) {
+      A_(space.matrix()) {
   if (!(epsilon > 0) || !std::isfinite(epsilon))
     throw InputError(format("epsilon: found %g, expected a positive number", epsilon));
+  if (mobility_.at_points)
+    variable_.emplace(space);
+  else
+    block_.emplace(space.pattern());
 }
+
+CahnHilliardScheme::VariableMobility::VariableMobility(const SurfaceSpace& space)
+    : A_m(space.matrix()), P(space.matrix()), Q(space.matrix()), block(space.pattern()) {}
 
 void CahnHilliardScheme::prepare(const BdfStep<State>& step, State& next) {
   next.x = motion_(next.t);
@@ -53,10 +60,37 @@ void CahnHilliardScheme::advance(const BdfStep<State>& step, const Field& loads,
   if (tangential_) add_advection(next, next.u);
   next.w = loads.col(1) / -epsilon_;
   if (theta_.size() > 0) next.w -= theta_;
-  block_.factorise(step.delta[0] / step.tau, 1.0, epsilon_, M_, A_);
-  block_.solve(next.u, next.w);
-  next.w *= -1.0;
+  if (variable_)
+    solve_with_variable_mobility(step.delta[0] / step.tau, next);
+  else
+    solve(step.delta[0] / step.tau, next);
   M_.multiply(next.u, next.Mu);
+}
+
+void CahnHilliardScheme::solve(double a, State& next) {
+  const double m = mobility_.in_time ? mobility_.in_time(next.t) : 1.0;
+  block_->factorise(a, m, epsilon_, M_, A_);
+  block_->solve(next.u, next.w);
+  next.w *= -1.0;
+}
+
+void CahnHilliardScheme::solve_with_variable_mobility(double a, State& next) {
+  auto& [A_m, P, Q, block] = *variable_;
+  const auto m = [&](const PointData<1>& p) {
+    Pack value;
+    mobility_.at_points(next.t, p, value);
+    return value;
+  };
+  space_.assemble_weighted_stiffness<1>(next.x, u_tilde_, m, A_m);
+  const double mean = A_m.trace() / A_.trace();
+  const double c = std::sqrt(a * epsilon_ / (mean > 0 ? mean : 1));
+  P.values = -(a * epsilon_ / (c * c)) * A_.values;
+  Q.values = (a / c) * M_.values;
+  block.factorise(P, Q, A_m);
+  next.w *= -a / c;
+  block.solve(next.w, next.u);
+  std::swap(next.w, next.u);
+  next.u /= c;
 }
 
 CahnHilliardState cahn_hilliard_state(const SurfaceSpace& space, double t, Field x, Field u, Field w) {

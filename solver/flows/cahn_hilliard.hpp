@@ -2,13 +2,16 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "solver/assembly/surface_space.hpp"
 #include "solver/geometry/prescribed_motion.hpp"
 #include "solver/linalg/block_solver.hpp"
+#include "solver/linalg/symmetric_block_solver.hpp"
 #include "solver/nodal_field.hpp"
+#include "solver/time/checkpoint.hpp"
 #include "solver/time/history.hpp"
 
 namespace esfem {
@@ -25,6 +28,14 @@ struct CahnHilliardState {
                                                              {"Mu", &CahnHilliardState::Mu}};
 };
 
+/// The mobility m of d•u + u div v - div(m grad w) = f + b; 1 when there is none of the functions.
+struct Mobility {
+  /// m(t) > 0, the same on the whole surface.
+  std::function<double(double t)> in_time = {};
+  /// m >= 0 in quadrature points; u is extrapolated.
+  std::function<void(double t, const PointData<1>& p, Pack& m)> at_points = {};
+};
+
 /// A step of bk22 (8.3) with its loads given: what does not depend on f, g and b. As printed (8.3) lacks tau
 /// before f, and the theta of (3.13); with epsilon it is
 ///   delta_0 M(t_n) u + tau A(t_n) w = tau (f + M(t_n) b) - sum_{j>=1} delta_j M(t_{n-j}) u^{n-j},
@@ -33,6 +44,15 @@ struct CahnHilliardState {
 /// Nodes may move with another velocity than the material, v + W with a tangential W (bk22 §1: ALE). Then
 /// d•u + u div v = d°u + u div(v + W) - div(u W), where d° is the derivative along the nodes, and f gets the
 /// load - int u~ W . grad phi_j.
+///
+/// With a mobility A(t_n) w becomes A_m w, (A_m)_ij = int m(u~) grad phi_i . grad phi_j, which keeps the
+/// order of BDF and conserves int u. For m(t) the system has the complex form of BlockSolver still. Else it
+/// has not, since A_m is no multiple of A; but a/c times the second line and U = c u, a = delta_0/tau, make
+/// it symmetric,
+///   -(a epsilon/c²) A U + (a/c) M w = (a/c) (g/epsilon + theta),
+///    (a/c) M U          +     A_m w = f + ..,
+/// with two unknowns a node (SymmetricBlockSolver). c² = a epsilon/mean of m makes the diagonal blocks of one
+/// size. The system is regular for every m >= 0, and A gives a good pivot even where m = 0, as U comes first.
 class CahnHilliardScheme {
  public:
   using State = CahnHilliardState;
@@ -40,33 +60,46 @@ class CahnHilliardScheme {
   /// theta (N x 1), see cahn_hilliard_theta; none when it is empty. tangential: W in the nodes; none: they
   /// are material points. Throws InputError unless epsilon > 0.
   CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon, Field theta,
-                     Velocity tangential);
+                     Velocity tangential, Mobility mobility);
 
   /// next.x at next.t, M and A there, and the extrapolated u~. Throws SingularityError where elements are
   /// degenerate.
   void prepare(const BdfStep<State>& step, State& next);
   const Field& u_tilde() const { return u_tilde_; }
+  const Field& theta() const { return theta_; }
+  void set_theta(Field theta) { theta_ = std::move(theta); }
 
   /// After prepare: solves for u and w. loads: N x 2, f(u~) and g(u~); b: nodal values at next.t, N x 1
   /// (none: empty).
   void advance(const BdfStep<State>& step, const Field& loads, const Field& b, State& next);
 
  private:
+  /// What the solvers of systems with A_m keep.
+  struct VariableMobility {
+    explicit VariableMobility(const SurfaceSpace& space);
+    SymmetricMatrix A_m, P, Q;
+    SymmetricBlockSolver block;
+  };
+
   void add_advection(const State& at, Field& load_of_u);
+  void solve(double a, State& next);
+  void solve_with_variable_mobility(double a, State& next);
 
   const SurfaceSpace& space_;
   NodalMotion motion_;
   double epsilon_;
   Field theta_;
   Velocity tangential_;
+  Mobility mobility_;
   SymmetricMatrix M_, A_;
-  BlockSolver block_;
+  std::optional<BlockSolver> block_;  ///< one of these
+  std::optional<VariableMobility> variable_;
   Field u_tilde_, Mu_sum_, Mb_, W_, u_and_W_, advection_;
 };
 
 /// Cahn-Hilliard equation on a surface that moves with a given velocity, bk22 (9.1) with a general f:
-///   d•u + u div v - Lap w = f(u, grad u) + b,   w + epsilon Lap u = g(u, grad u)/epsilon,
-/// linear in each step: f and g are evaluated with u~.
+///   d•u + u div v - div(m grad w) = f(u, grad u) + b,   w + epsilon Lap u = g(u, grad u)/epsilon,
+/// linear in each step: f, g and the mobility m are evaluated with u~.
 ///
 /// A Problem says what f, g and b are:
 ///   struct Problem {
@@ -81,10 +114,11 @@ class CahnHilliard {
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
   CahnHilliard(const SurfaceSpace& space, Problem problem, NodalMotion motion, double epsilon,
-               Field theta = {}, Velocity tangential = {})
+               Field theta = {}, Velocity tangential = {}, Mobility mobility = {})
       : space_(space),
         problem_(std::move(problem)),
-        scheme_(space, std::move(motion), epsilon, std::move(theta), std::move(tangential)) {}
+        scheme_(space, std::move(motion), epsilon, std::move(theta), std::move(tangential),
+                std::move(mobility)) {}
 
   /// One step with BDF of order q: fills all fields of next. Throws SingularityError where elements have
   /// degenerated.
@@ -97,6 +131,14 @@ class CahnHilliard {
     space_.assemble_load<1, 2, 0>(next.x, scheme_.u_tilde(), f_and_g, loads_);
     problem_.b(next.t, next.x, b_);
     scheme_.advance(step, loads_, b_, next);
+  }
+
+  /// For checkpoints: theta, which is that of the start.
+  nlohmann::json progress() const {
+    return scheme_.theta().size() > 0 ? packed(scheme_.theta()) : nlohmann::json();
+  }
+  void resume(const nlohmann::json& saved) {
+    if (!saved.is_null()) scheme_.set_theta(unpacked(saved));
   }
 
  private:

@@ -24,15 +24,18 @@ void check(const CoupledDiffusionParameters& parameters, int species) {
 CoupledDiffusionScheme::CoupledDiffusionScheme(const SurfaceSpace& space, int species,
                                                CoupledDiffusionParameters parameters,
                                                CoupledDiffusionVariant variant,
-                                               const RegularityLimits& limits)
+                                               const RegularityLimits& limits, VariableLaw law)
     : space_(space),
       parameters_((check(parameters, species), std::move(parameters))),
       variant_(variant),
       limits_(limits),
+      law_(std::move(law)),
       diffusion_(parameters_.diffusion),
       M_(space.matrix()),
       A_(space.matrix()),
-      spd_(space.pattern()) {}
+      spd_(space.pattern()) {
+  if (law_.alpha || law_.beta) A_alpha_ = A_beta_ = K_ = space.matrix();
+}
 
 void CoupledDiffusionScheme::extrapolate(const BdfStep<State>& step) {
   step.extrapolate(&State::x, x_tilde_);
@@ -43,6 +46,7 @@ void CoupledDiffusionScheme::extrapolate(const BdfStep<State>& step) {
 void CoupledDiffusionScheme::advance(const BdfStep<State>& step, const Field& loads, State& next) {
   diffuse(step, loads, next.u);
   require_bounded_u(step.tau, next.u);
+  if (law_.alpha || law_.beta) find_coefficients(next.t);
   if (variant_.law == CoupledDiffusionVariant::regularised)
     move_regularised(step, loads, next);
   else
@@ -72,14 +76,49 @@ void CoupledDiffusionScheme::diffuse(const BdfStep<State>& step, const Field& lo
   diffusion_.solve(spd_, step.delta[0] / step.tau, M_, A_, u);
 }
 
+/// A_alpha, A_beta and the load of grad beta.
+void CoupledDiffusionScheme::find_coefficients(double t) {
+  const auto weigh = [&](const NodalFunction& function, double constant, const char* name, bool may_vanish,
+                         SymmetricMatrix& out) {
+    if (!function) {
+      out.values = constant * A_.values;
+      return;
+    }
+    function(t, x_tilde_, u_tilde_, coefficient_);
+    Eigen::Index node;
+    const double least = coefficient_.col(0).minCoeff(&node);
+    if (!(may_vanish ? least >= 0 : least > 0))
+      throw NumericsError(format("%s is %g at (%g, %g, %g), t = %g: expected %s", name, least,
+                                 x_tilde_(node, 0), x_tilde_(node, 1), x_tilde_(node, 2), t,
+                                 may_vanish ? "0 or a positive number" : "a positive number"));
+    space_.assemble_weighted_stiffness<1>(
+        x_tilde_, coefficient_, [](const PointData<1>& p) { return p.u[0]; }, out);
+  };
+  weigh(law_.alpha, parameters_.alpha, "alpha", false, A_alpha_);
+  weigh(law_.beta, parameters_.beta, "beta", true, A_beta_);
+  if (!law_.beta) return;
+  const auto gradient = [](const PointData<1>& p, Integrand<3, 0>& load) {
+    for (int i = 0; i < 3; ++i) load.value[i] = p.grad[0][i];
+  };
+  space_.assemble_load<1, 3, 0>(x_tilde_, coefficient_, gradient, grad_beta_);
+}
+
 // (2.20) with x from (2.21):
 //   (M(x̃) + (alpha + beta tau/delta_0) A(x̃)) v = g(x̃, ũ) + beta/delta_0 A(x̃) sum_{j>=1} delta_j x^{n-j}
 void CoupledDiffusionScheme::move_regularised(const BdfStep<State>& step, const Field& loads, State& next) {
   const double tau = step.tau, delta_0 = step.delta[0], beta = parameters_.beta / delta_0;
   step.known_sum(&State::x, x_sum_);
-  A_.multiply(x_sum_, A_x_sum_);
-  next.v = loads.rightCols(3) + beta * A_x_sum_;
-  spd_.factorise(1.0, M_, parameters_.alpha + beta * tau, A_);
+  if (law_.alpha || law_.beta) {
+    A_beta_.multiply(x_sum_, A_x_sum_);
+    next.v = loads.rightCols(3) + A_x_sum_ / delta_0;
+    if (law_.beta) next.v -= grad_beta_;
+    K_.values = A_alpha_.values + tau / delta_0 * A_beta_.values;
+    spd_.factorise(1.0, M_, 1.0, K_);
+  } else {
+    A_.multiply(x_sum_, A_x_sum_);
+    next.v = loads.rightCols(3) + beta * A_x_sum_;
+    spd_.factorise(1.0, M_, parameters_.alpha + beta * tau, A_);
+  }
   spd_.solve(next.v);
   next.x = (tau * next.v - x_sum_) / delta_0;
 }
@@ -89,7 +128,10 @@ void CoupledDiffusionScheme::move_dynamic(const BdfStep<State>& step, const Fiel
   const double tau = step.tau, delta_0 = step.delta[0];
   step.known_sum(&State::Mv, Mv_sum_);
   next.v = loads.rightCols(3) - Mv_sum_ / tau;
-  spd_.factorise(delta_0 / tau, M_, parameters_.alpha, A_);
+  if (law_.alpha)
+    spd_.factorise(delta_0 / tau, M_, 1.0, A_alpha_);
+  else
+    spd_.factorise(delta_0 / tau, M_, parameters_.alpha, A_);
   spd_.solve(next.v);
   step.known_sum(&State::x, x_sum_);
   next.x = (tau * next.v - x_sum_) / delta_0;
@@ -115,11 +157,13 @@ CoupledDiffusionState coupled_diffusion_state(const SurfaceSpace& space, double 
 
 CoupledKinetics::CoupledKinetics(const SurfaceSpace& space, PointwiseKinetics kinetics,
                                  CoupledDiffusionParameters parameters, CoupledDiffusionVariant variant,
-                                 const RegularityLimits& limits)
+                                 const RegularityLimits& limits, VariableLaw law, bool with_curvature)
     : space_(space),
       kinetics_(std::move(kinetics)),
       species_(static_cast<int>(parameters.diffusion.size())),
-      scheme_(space, species_, std::move(parameters), variant, limits) {}
+      scheme_(space, species_, std::move(parameters), variant, limits, std::move(law)) {
+  if (with_curvature) curvature_.emplace(space);
+}
 
 void CoupledKinetics::step(const BdfStep<State>& step, State& next) {
   scheme_.extrapolate(step);
@@ -128,7 +172,14 @@ void CoupledKinetics::step(const BdfStep<State>& step, State& next) {
     const Pack g = values[species_];
     for (int i = 0; i < 3; ++i) values[species_ + i] = g * point[3 + i];
   };
-  assemble_pointwise_load(space_, scheme_.x_tilde(), scheme_.u_tilde(), species_ + 3, f_and_g_nu, loads_);
+  const Field* inputs = &scheme_.u_tilde();
+  if (curvature_) {
+    curvature_->compute(scheme_.x_tilde());
+    u_and_H_.resize(space_.dofs(), species_ + 1);
+    u_and_H_ << scheme_.u_tilde(), curvature_->H();
+    inputs = &u_and_H_;
+  }
+  assemble_pointwise_load(space_, scheme_.x_tilde(), *inputs, species_ + 3, f_and_g_nu, loads_);
   scheme_.advance(step, loads_, next);
 }
 

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "solver/assembly/pointwise_load.hpp"
 #include "solver/flows/species_diffusion.hpp"
+#include "solver/geometry/discrete_curvature.hpp"
 #include "solver/geometry/regularity.hpp"
 #include "solver/linalg/spd_solver.hpp"
 #include "solver/nodal_field.hpp"
@@ -44,14 +46,29 @@ struct CoupledDiffusionParameters {
   double reaction_rate = 0;  ///< of f, 1/time, for messages about steps too large for it; 0: not known
 };
 
+/// Nodal values, N x 1, of a function of x (N x 3) and u (N x m) at a time.
+using NodalFunction = std::function<void(double t, const Field& x, const Field& u, Field& values)>;
+
+/// alpha > 0 and beta >= 0 of the velocity laws as functions of the surface, in the place of the parameters;
+/// none: the parameters. They are interpolated in the nodes, with x̃ and ũ.
+struct VariableLaw {
+  NodalFunction alpha = {}, beta = {};
+};
+
 /// A step of nick18 (2.18)-(2.21) with its loads given: what does not depend on f and g.
+///
+/// With a VariableLaw the regularised law is v - div(alpha grad v) + beta H nu = g nu. Since
+///   -div(beta grad x) = beta H nu - grad beta,
+/// its weak form has, with (A_c)_ij = int c grad phi_i . grad phi_j, the lines of (2.20)
+///   M(x̃) v + A_alpha(x̃) v + A_beta(x̃) x + int grad beta . phi = g(x̃, ũ).
 class CoupledDiffusionScheme {
  public:
   using State = CoupledDiffusionState;
 
   /// Throws InputError for parameters out of range and when there is not one D per species.
   CoupledDiffusionScheme(const SurfaceSpace& space, int species, CoupledDiffusionParameters parameters,
-                         CoupledDiffusionVariant variant, const RegularityLimits& limits);
+                         CoupledDiffusionVariant variant, const RegularityLimits& limits,
+                         VariableLaw law = {});
 
   /// (2.18) for x and u, and M(x̃), A(x̃). Throws SingularityError where Gamma_h[x̃] is degenerate.
   void extrapolate(const BdfStep<State>& step);
@@ -68,14 +85,18 @@ class CoupledDiffusionScheme {
   void diffuse(const BdfStep<State>& step, const Field& loads, Field& u);
   void move_regularised(const BdfStep<State>& step, const Field& loads, State& next);
   void move_dynamic(const BdfStep<State>& step, const Field& loads, State& next);
+  void find_coefficients(double t);
 
   const SurfaceSpace& space_;
   CoupledDiffusionParameters parameters_;
   CoupledDiffusionVariant variant_;
   RegularityLimits limits_;
+  VariableLaw law_;
   SpeciesDiffusion diffusion_;
   SymmetricMatrix M_, A_;
+  SymmetricMatrix A_alpha_, A_beta_, K_;  ///< of a variable law; empty without one
   SpdSolver spd_;
+  Field coefficient_, grad_beta_;
   Field x_tilde_, u_tilde_, x_sum_, A_x_sum_, Mu_sum_, Mv_sum_;
 };
 
@@ -131,10 +152,12 @@ class CoupledDiffusion {
 };
 
 /// Values of f_1, .., f_m and, for CoupledKinetics, g at a quadrature point: x (3), the unit normal (3), u_1,
-/// .., u_m (assemble_pointwise_load).
+/// .., u_m (assemble_pointwise_load) and, where CoupledKinetics computes it, H.
 using PointwiseKinetics = std::function<void(double t, const Pack* point, Pack* values)>;
 
-/// CoupledDiffusion for f and g that are known only at run time, without gradients of u.
+/// CoupledDiffusion for f and g that are known only at run time, without gradients of u. They may depend on
+/// the mean curvature H of Gamma_h[x̃] (DiscreteCurvature), which costs a factorisation a step and, on P_k
+/// surfaces, converges with order k - 1 in L2.
 class CoupledKinetics {
  public:
   using State = CoupledDiffusionState;
@@ -142,7 +165,7 @@ class CoupledKinetics {
   /// The number of species is that of the diffusion coefficients. Otherwise as CoupledDiffusion.
   CoupledKinetics(const SurfaceSpace& space, PointwiseKinetics kinetics,
                   CoupledDiffusionParameters parameters, CoupledDiffusionVariant variant,
-                  const RegularityLimits& limits = {});
+                  const RegularityLimits& limits = {}, VariableLaw law = {}, bool with_curvature = false);
 
   /// As that of CoupledDiffusion.
   void step(const BdfStep<State>& step, State& next);
@@ -152,7 +175,8 @@ class CoupledKinetics {
   PointwiseKinetics kinetics_;
   int species_;
   CoupledDiffusionScheme scheme_;
-  Field loads_;
+  std::optional<DiscreteCurvature> curvature_;  ///< where f or g depend on H
+  Field u_and_H_, loads_;
 };
 
 /// The state with given nodal values, and Mu = M(x) u, Mv = M(x) v: x̃ = x at the starting values. Throws

@@ -297,6 +297,12 @@ Formula::Formula(const std::string& text, const FormulaNames& names, const std::
   CompiledFormulas({*this});  // throws for what cannot be evaluated
 }
 
+bool Formula::depends_on(const std::string& variable) const {
+  const auto& variables = tree_->names.variables;
+  const auto found = std::find(variables.begin(), variables.end(), variable);
+  return found != variables.end() && tree_->expression.has(tree_->variables[found - variables.begin()]);
+}
+
 Formula Formula::derivative(const std::string& variable) const {
   const auto& variables = tree_->names.variables;
   const auto found = std::find(variables.begin(), variables.end(), variable);

@@ -39,6 +39,9 @@ class Formula {
   /// kinks.
   Formula derivative(const std::string& variable) const;
 
+  /// Whether a variable occurs in it, or in one of its definitions.
+  bool depends_on(const std::string& variable) const;
+
   const std::string& text() const { return text_; }
   /// For messages: what the formula is, and its text.
   std::string description() const { return where_ + ": \"" + text_ + "\""; }

@@ -125,10 +125,34 @@ void flip_to_delaunay(Triangulation& triangulation, const std::vector<Vec3>& x) 
   }
 }
 
+/// The size function in the vertices. It is evaluated again where a vertex has moved by a tenth of its size
+/// or more: the sizes only steer the relaxation, in whose later steps vertices hardly move.
+class VertexSizes {
+ public:
+  VertexSizes(const SizeFunction& size, const std::vector<Vec3>& x) : size_(size), at_(x) {
+    for (const Vec3& y : x) sizes_.push_back(size(y));
+  }
+
+  void follow(const std::vector<Vec3>& x) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if ((x[i] - at_[i]).squaredNorm() < 0.01 * sizes_[i] * sizes_[i]) continue;
+      at_[i] = x[i];
+      sizes_[i] = size_(x[i]);
+    }
+  }
+
+  double between(int i, int j) const { return (sizes_[i] + sizes_[j]) / 2; }
+
+ private:
+  const SizeFunction& size_;
+  std::vector<Vec3> at_;
+  std::vector<double> sizes_;
+};
+
 /// The forces of bars that repel when they are shorter than their natural length, 1.2 times the one that
 /// would fit: so the mesh is everywhere under pressure and fills the surface (Persson & Strang, section 2).
 std::vector<Vec3> bar_forces(const Triangulation& triangulation, const std::vector<Vec3>& x,
-                             const SizeFunction& size) {
+                             const VertexSizes& sizes) {
   struct Bar {
     int from, to;
     double size, length;
@@ -140,7 +164,7 @@ std::vector<Vec3> bar_forces(const Triangulation& triangulation, const std::vect
     for (int i = 0; i < 3; ++i) {
       if (triangulation.neighbour[t][i] < t) continue;
       const int from = triangulation.corner[t][(i + 1) % 3], to = triangulation.corner[t][(i + 2) % 3];
-      bars.push_back({from, to, size((x[from] + x[to]) / 2), (x[to] - x[from]).norm()});
+      bars.push_back({from, to, sizes.between(from, to), (x[to] - x[from]).norm()});
       squared_lengths += bars.back().length * bars.back().length;
       squared_sizes += bars.back().size * bars.back().size;
     }
@@ -172,8 +196,10 @@ void relax(Mesh& mesh, const Surface& surface, const SizeFunction& size) {
   std::vector<Vec3> x(mesh.nodes.rows());
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = mesh.nodes.row(i);
   flip_to_delaunay(triangulation, x);
+  VertexSizes sizes(size, x);
   for (int step = 0; step < steps; ++step) {
-    const std::vector<Vec3> force = bar_forces(triangulation, x, size);
+    sizes.follow(x);
+    const std::vector<Vec3> force = bar_forces(triangulation, x, sizes);
     for (std::size_t i = 0; i < x.size(); ++i) x[i] = step_to_surface(surface, x[i] + step_length * force[i]);
     flip_to_delaunay(triangulation, x);
   }

@@ -44,6 +44,14 @@ PointwiseKinetics formula_kinetics(const std::vector<Formula>& f_and_g) {
   };
 }
 
+NodalFunction formula_nodal_function(const Formula& formula) {
+  return [compiled = CompiledFormulas({formula})](double t, const Field& x, const Field& u, Field& values) {
+    Field points(x.rows(), 4 + u.cols());
+    points << with_time(x, t), u;
+    values = compiled(points);
+  };
+}
+
 Velocity formula_velocity(const std::vector<Formula>& components) {
   if (components.size() != 3)
     throw InputError(format("a velocity of %zu components; expected 3", components.size()));
@@ -60,6 +68,39 @@ Velocity formula_normal_velocity(const Formula& d) {
     v = values.rightCols(3);
     v.array().colwise() *= -values.col(0).array() / v.rowwise().squaredNorm().array();
   };
+}
+
+namespace {
+
+NumericsError bad_mobility(const std::string& description, double found, const char* expected,
+                           const std::string& at) {
+  return NumericsError(description + format(" is %g at ", found) + at + ": expected " + expected);
+}
+
+}  // namespace
+
+Mobility formula_mobility(const Formula& m) {
+  const std::string description = m.description();
+  const CompiledFormulas compiled({m});
+  const std::vector<std::string> in_points = {"x", "y", "z", "u"};
+  if (std::none_of(in_points.begin(), in_points.end(), [&](auto& name) { return m.depends_on(name); }))
+    return {[compiled, description](double t) {
+              const double in[] = {0, 0, 0, t, 0};
+              double value;
+              compiled.evaluate(in, &value);
+              if (value > 0) return value;
+              throw bad_mobility(description, value, "a positive mobility", format("t = %g", t));
+            },
+            {}};
+  return {{}, [compiled, description](double t, const PointData<1>& p, Pack& value) {
+            const Pack in[] = {p.x[0], p.x[1], p.x[2], pack(t), p.u[0]};
+            compiled.evaluate(in, &value);
+            for (int lane = 0; lane < pack_size; ++lane)
+              if (value[lane] < 0)
+                throw bad_mobility(description, value[lane], "no negative mobility, for example max(.., 0)",
+                                   format("x = %g, y = %g, z = %g, t = %g, u = %g", in[0][lane], in[1][lane],
+                                          in[2][lane], t, in[4][lane]));
+          }};
 }
 
 FormulaMixture::FormulaMixture(const Formula& potential, const std::vector<Formula>& source)

@@ -19,13 +19,21 @@ FormulaNames names_of_kinetics(int species, FormulaNames names);
 /// One column for each formula in space and time, in the nodes x at time t.
 Field nodal_values(const CompiledFormulas& formulas, const Field& x, double t);
 
-/// f_1, .., f_m and, for CoupledKinetics, g: formulas with names_of_kinetics.
+/// f_1, .., f_m and, for CoupledKinetics, g: formulas with names_of_kinetics, and H behind these where it is
+/// an input.
 PointwiseKinetics formula_kinetics(const std::vector<Formula>& f_and_g);
+
+/// A formula with names_of_kinetics in the nodes.
+NodalFunction formula_nodal_function(const Formula& formula);
 
 /// The velocity with three components in space and time.
 Velocity formula_velocity(const std::vector<Formula>& components);
 /// The normal velocity of the level set of a formula in space and time (normal_velocity).
 Velocity formula_normal_velocity(const Formula& level_set);
+
+/// The mobility m(x, y, z, t, u), in_time where only t occurs. A step throws NumericsError, which names the
+/// place, where m is negative, or m(t) is not positive.
+Mobility formula_mobility(const Formula& m);
 
 /// The Problem of CahnHilliard (f = 0) and of LinearisedCahnHilliard for a potential F(u), g = F', and a
 /// source b in space and time, which is interpolated in the nodes.

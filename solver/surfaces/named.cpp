@@ -111,7 +111,13 @@ Surface surface_of_formula(const json& description) {
     constants[item.key()] = item.value();
   }
   const json& box = description.at("box");
-  return formula_surface(formula, {corner_of(box, 0), corner_of(box, 1)}, constants, "surface: level_set");
+  try {
+    return formula_surface(formula, {corner_of(box, 0), corner_of(box, 1)}, constants, "surface: level_set");
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    if (message.find("unknown name") == std::string::npos) throw;
+    throw InputError(message + "; numbers that it names stand in \"parameters\" of the surface");
+  }
 }
 
 }  // namespace

@@ -89,6 +89,9 @@ TEST_P(SurfaceSpaceOfDegree, LoadsAgreeWithMatrices) {
   space.assemble_weighted_mass<0>(
       mesh.nodes, Field(), [](const PointData<0>&) { return pack(1); }, W);
   EXPECT_LT((W.values - M.values).cwiseAbs().maxCoeff(), 1e-15);
+  space.assemble_weighted_stiffness<0>(
+      mesh.nodes, Field(), [](const PointData<0>&) { return pack(1); }, W);
+  EXPECT_LT((W.values - A.values).cwiseAbs().maxCoeff(), 1e-13);
 }
 
 TEST_P(SurfaceSpaceOfDegree, ResultsDoNotDependOnTheOrderOfElementsOrOnRotations) {
@@ -143,6 +146,27 @@ TEST(SurfaceSpace, WeightedMassAgreesWithTheLoadOfTheProduct) {
       mesh.nodes, u,
       [&](const PointData<2>& at, Integrand<1, 0>& out) { out.value[0] = weight(at) * at.u[1]; }, load);
   EXPECT_LT((W * u.col(1) - load).cwiseAbs().maxCoeff(), 1e-15);
+}
+
+TEST(SurfaceSpace, WeightedStiffnessAgreesWithTheLoadOfTheFlux) {
+  const Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, 2, 1);
+  const SurfaceSpace space(mesh);
+  SymmetricMatrix W = space.matrix();
+  const Field u = mesh.nodes.leftCols(2);
+  auto weight = [](const PointData<2>& at) { return at.u[0] * at.x[2] + 2.0; };
+  space.assemble_weighted_stiffness<2>(mesh.nodes, u, weight, W);
+  Field load;
+  const auto flux = [&](const PointData<2>& at, Integrand<1, 1>& out) {
+    out.value[0] = Pack{};
+    for (int i = 0; i < 3; ++i) out.flux[0][i] = weight(at) * at.grad[1][i];
+  };
+  space.assemble_load<2, 1, 1>(mesh.nodes, u, flux, load);
+  EXPECT_LT((W * u.col(1) - load).cwiseAbs().maxCoeff(), 1e-13);
+  EXPECT_LT((W * Field::Ones(space.dofs(), 1)).cwiseAbs().maxCoeff(), 1e-13);
+  double sum = 0;
+  for (int i = 0; i < space.dofs(); ++i)
+    sum += (W * Field(Field::Identity(space.dofs(), space.dofs()).col(i)))(i);
+  EXPECT_NEAR(W.trace(), sum, 1e-11);
 }
 
 TEST(SurfaceSpace, PointDataIsConsistent) {

@@ -170,6 +170,16 @@ TEST(Formula, RefusesNamesThatAreNoneOrTaken) {
   EXPECT_EQ(message({{"x", "I", "Pi"}, {{"Euler", 1}}}), "no error");
 }
 
+TEST(Formula, KnowsOnWhatItDepends) {
+  FormulaNames with_parts = names;
+  with_parts.definitions = {{"p", "y^2"}};
+  EXPECT_TRUE(Formula("a*x", names, "f").depends_on("x"));
+  EXPECT_FALSE(Formula("a*x", names, "f").depends_on("y"));
+  EXPECT_TRUE(Formula("a*p", with_parts, "f").depends_on("y"));
+  EXPECT_FALSE(Formula("x-x+a", names, "f").depends_on("x"));
+  EXPECT_FALSE(Formula("a*x", names, "f").depends_on("a"));  // a number, no variable
+}
+
 TEST(Formula, NamesPartsOfItself) {
   const FormulaNames with = {
       {"x", "y"}, {{"a", 0.3}}, {{"r", "sqrt(s)"}, {"s", "x^2+y^2"}, {"slope", "diff(r, x)"}}};

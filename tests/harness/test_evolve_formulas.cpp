@@ -8,7 +8,10 @@
 #include <set>
 
 #include "experiments/evolve/config.hpp"
+#include "solver/analysis/errors.hpp"
 #include "solver/constants.hpp"
+#include "solver/problems/evolving_ellipsoid.hpp"
+#include "solver/problems/growing_sphere.hpp"
 #include "tests/harness/evolve_program.hpp"
 
 namespace esfem::test_evolve_formulas {
@@ -46,6 +49,43 @@ double largest_difference(const json& a, const json& b) {
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
     largest = std::max(largest, largest_difference(a[i], b[i]));
   return largest;
+}
+
+Field fields_of(const json& nodal, const std::vector<std::string>& names) {
+  Field result(nodal.at("x").size(), 0);
+  for (const std::string& name : names)
+    for (int l = 0, components = int(nodal.at(name)[0].size()); l < components; ++l) {
+      result.conservativeResize(Eigen::NoChange, result.cols() + 1);
+      for (int j = 0; j < result.rows(); ++j) {
+        const json& row = nodal.at(name)[j];
+        result(j, result.cols() - 1) = row.is_array() ? row[l] : row;
+      }
+    }
+  return result;
+}
+
+/// The mesh {"subdivisions": n} of the unit sphere, of degree 2.
+struct SphereMesh {
+  explicit SphereMesh(int subdivisions)
+      : mesh(lagrange_mesh(icosphere(1, subdivisions), 2)),
+        x((project_nodes(mesh, sphere(1)), mesh.nodes)),
+        space(mesh) {}
+  Mesh mesh;
+  Field x;
+  SurfaceSpace space;
+};
+
+/// All norms of a built-in solution, at one time, are the last ones of a series.
+void expect_same_errors(const ErrorRecorder& expected, const json& series, int count) {
+  int compared = 0;
+  for (const auto& [name, values] : expected.series()) {
+    if (name == "t") continue;
+    ASSERT_TRUE(series.contains(name)) << name;
+    EXPECT_NEAR(series.at(name).back().get<double>(), values.back(), 1e-10) << name;
+    EXPECT_GT(values.back(), 1e-6) << name;
+    ++compared;
+  }
+  EXPECT_EQ(compared, count);
 }
 
 const json dumbbell_formula = {{"level_set", "x^2+y^2+2*z^2*(z^2-199/200)-0.04"},
@@ -122,11 +162,21 @@ TEST_F(EvolveFormulas, TheManufacturedSolutionOfNick18IsTheBuiltInOne) {
   built_in.update({{"problem", "growing_sphere"}});
   formula.update({{"kinetics", {{"f", {f}}, {"diffusion", {1}}, {"g", g}}},
                   {"parameters", {{"alpha", 1}, {"beta", 1}}},
-                  {"initial", {{"u", "x*y*z"}}}});
+                  {"initial", {{"u", "x*y*z"}}},
+                  {"exact",
+                   {{"x", {"x*" + r, "y*" + r, "z*" + r}},
+                    {"v", {"x*" + dr + "/" + r, "y*" + dr + "/" + r, "z*" + dr + "/" + r}},
+                    {"u", "exp(-t^2)*x*y*z"},
+                    {"level_set", "x^2+y^2+z^2-" + r + "^2"}}}});
   json expected_run = on_the_sphere(built_in);
   const json expected = end_of(expected_run), found = end_of(on_the_sphere(formula));
   for (const char* field : {"x", "u"})
     EXPECT_LT(largest_difference(found.at(field), expected.at(field)), 1e-10) << field;
+  const SphereMesh mesh(2);
+  const ExactEvolution exact = growing_sphere();
+  ErrorRecorder errors(mesh.space, exact, mesh.x);
+  errors.record(0.2, fields_of(found, {"x", "v", "u"}));
+  expect_same_errors(errors, read_json(series), 18);
 }
 
 TEST_F(EvolveFormulas, TheManufacturedSolutionOfBk22IsTheBuiltInOne) {
@@ -168,6 +218,13 @@ TEST_F(EvolveFormulas, TheManufacturedSolutionOfBk22IsTheBuiltInOne) {
     EXPECT_LT(largest_difference(found.at(field), expected.at(field)), 1e-10) << field;
   const json errors = read_json(series);
   EXPECT_LT(errors.at("u_nodal_L2").back(), 0.02);
+  const SphereMesh mesh(1);
+  const ManufacturedCahnHilliard manufactured(EvolvingEllipsoid(), 0.5);
+  MovingNodes nodes(EvolvingEllipsoid().velocity(), mesh.x, 0.005);
+  const ExactEvolution exact = exact_evolution(manufactured, nodes);
+  ErrorRecorder recorder(mesh.space, exact, mesh.x);
+  recorder.record(0.1, fields_of(found, {"u", "w"}));
+  expect_same_errors(recorder, errors, 12);
   // GiNaC orders terms and signs by addresses, which are others in each process.
   for (int repetition = 0; repetition < 3; ++repetition) EXPECT_EQ(end_of(formula).at("w"), found.at("w"));
 }
@@ -293,7 +350,8 @@ TEST_F(EvolveFormulas, ErrorsNameTheFormulaAndThePlace) {
               HasSubstr("expected one of them"));
   EXPECT_THAT(refusal(with({{"parameters", {{"k", "a"}}}})), HasSubstr("k"));
   EXPECT_THAT(refusal(with({{"parameters", {{"u", 1}}}})), HasSubstr("the name \"u\" is taken"));
-  EXPECT_THAT(refusal(with({{"exact", {{"w", "1"}}}})), HasSubstr("exact: found w; expected one of v, u"));
+  EXPECT_THAT(refusal(with({{"exact", {{"w", "1"}}}})),
+              HasSubstr("exact: found w; expected level_set or one of x, v, u"));
   EXPECT_THAT(refusal(config({{"initial", {{"u", "1"}}}})),
               HasSubstr("flow mean_curvature takes no initial"));
   EXPECT_EQ(run(with({{"kinetics", {{"f", {"sqrt(0.03-t)"}}}}})), exit_numerics);

@@ -98,12 +98,12 @@ class StudyProgram : public EvolveProgram {
 TEST_F(StudyProgram, TheHeatEquationHasTheOrdersOfItsElements) {
   for (int degree : {1, 2}) {
     ASSERT_EQ(study("--levels 0-2", heat(degree, 3)), 0) << message;
-    EXPECT_NEAR(order("u", "quadrature_L2", "h"), degree + 1, 0.2) << degree;
-    EXPECT_NEAR(order("u", "quadrature_H1_semi", "h"), degree, 0.2) << degree;
+    EXPECT_NEAR(order("u", "lifted_L2", "h"), degree + 1, 0.2) << degree;
+    EXPECT_NEAR(order("u", "lifted_H1_semi", "h"), degree, 0.2) << degree;
   }
   // The wrong equation: the error does not decrease.
   ASSERT_EQ(study("--levels 0-2", heat(2, 3, 1.1)), 0) << message;
-  EXPECT_LT(order("u", "quadrature_L2", "h"), 1);
+  EXPECT_LT(order("u", "lifted_L2", "h"), 1);
 }
 
 TEST_F(StudyProgram, TheHeatEquationHasTheOrdersOfItsSteps) {
