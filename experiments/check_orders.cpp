@@ -34,7 +34,8 @@ const char* const help =
     "claims is one line, \"18 of 20 met\"; those that are not met are listed below it.\n\n"
     "--output FILE writes all of them as JSON: {\"schema\": \"esfem-verdicts/1\", \"tables\": "
     "[{\"experiment\", \"paper\",\n"
-    "\"table\", \"claims\": [{\"id\", \"statement\", \"source\", \"met\", \"outcome\", \"as_expected\", "
+    "\"table\", \"runs\": {\"found\", \"expected\"}, \"claims\": [{\"id\", \"statement\", \"source\", "
+    "\"met\", \"outcome\", \"as_expected\", "
     "\"finding\", "
     "\"measured\", "
     "\"expected\", \"rows_used\", ...}], \"families\",\n"
@@ -234,10 +235,12 @@ Count check_table(const std::string& file, const std::string& folder, nlohmann::
     checked.push_back({&claim, verdict, is_as_expected(claim, verdict, table)});
     claims.push_back(to_json(checked.back()));
   }
+  const int found = static_cast<int>(table.rows.size()), wanted = expected_runs(reference, table);
   verdicts.push_back({{"experiment", table.experiment},
                       {"paper", table.paper},
                       {"table", file},
                       {"claims", claims},
+                      {"runs", {{"found", found}, {"expected", wanted}}},
                       {"families", families_to_json(checked, reference)},
                       {"elsewhere", reference.claims.size() - checked.size()}});
   std::printf("%s (%s): %s\n", table.experiment.c_str(), table.paper.c_str(), file.c_str());
@@ -246,8 +249,14 @@ Count check_table(const std::string& file, const std::string& folder, nlohmann::
     return {0, 0, 1, 1};
   }
   print(lines_of(checked, reference));
+  Count count = count_of(checked);
+  if (found != wanted) {
+    std::printf("  NOT MET  the table has %d runs, expected %d, as \"runs\" of %s says.\n", found, wanted,
+                source.c_str());
+    ++count.unexpected;
+  }
   std::printf("\n");
-  return count_of(checked);
+  return count;
 }
 
 int run(int argc, char** argv) {

@@ -80,7 +80,7 @@ def _figure(surfaces, points, norm, notes):
     headings = [[f"{SURFACES[surface]}: {what}" for surface in surfaces]
                 for what in ("positions of the nodes", "distance from the surface")]
     figure, grid = time_series.panels(headings, {_label(variant): _look(variant) for variant in variants}, notes)
-    labels = [f"error of $x$ in {NORMS[norm]}", "distance"]
+    labels = [f"error of $x$ in {NORMS[norm]}", "distance, r.m.s. of the nodes"]
     for column, label, axes_row in zip((1, 2), labels, grid):
         for surface, axes in zip(surfaces, axes_row):
             for variant in variants:

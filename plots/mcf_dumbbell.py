@@ -140,8 +140,10 @@ def surfaces_figure(setting, methods, folder):
     rotation = view(18)
     surfaces = [[file and read_surface(file[1]) for file in files] for _, files in rows]
     boxes = [[surface and extent(surface, rotation) for surface in row] for row in surfaces]
-    notes = [rf"Orange: elements with an angle below {SMALL_ANGLE}°. A column ends with the surface at which its run "
-             "stops: the computed one, or the one", "extrapolated for the next step, where that is already degenerate."]
+    notes = [rf"Orange: elements with an angle below {SMALL_ANGLE}°."]
+    if any("singular_surface" in setting.runs[method] for method in found):
+        notes = [notes[0] + " A column ends with the surface at which its run stops: the computed one, or the one",
+                 "extrapolated for the next step, where that is already degenerate."]
     figure, grid = surface_grid(boxes, [f"$t = {t:g}$" for t, _ in rows], [LABELS[method] for method in found],
                                 setting.heading(found), foot=time_series.LINE * len(notes))
     for axes_row, (_, files), surface_row in zip(grid, rows, surfaces):

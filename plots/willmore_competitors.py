@@ -18,8 +18,8 @@ from willmore import finest, from_limit, limit_of
 ERROR = "x_nodal_H1"
 SURFACES = {"sphere": "sphere", "clifford_torus": "Clifford torus", "ellipsoid": "ellipsoid"}
 # Thinner lines lie on top: lines that coincide all show.
-SCHEMES = {"willmore": ("KLL", style.BLUE, 1.15), "dziuk_willmore": ("Dziuk", style.VERMILLION, 2.1),
-           "bgn_willmore": ("BGN", style.PURPLE, 1.0)}
+SCHEMES = {"willmore": ("KLL", style.BLUE, 1.9), "dziuk_willmore": ("Dziuk", style.VERMILLION, 3.4),
+           "bgn_willmore": ("BGN", style.PURPLE, 0.8)}
 DEGREES = {2: ("quadratic", style.DASHES["solid"]), 1: ("linear", style.DASHES["dashed"])}
 # The energy of the discrete surface is the same functional for all schemes; W(H_h) is of a scheme's own H_h.
 ENERGIES = ("kappa_energy", "willmore_energy")
@@ -57,7 +57,8 @@ def _of(runs, surface, *names):
 
 
 def _line(scheme, degree):
-    return {"color": SCHEMES[scheme][1], "linestyle": DEGREES[degree][1], "linewidth": SCHEMES[scheme][2]}
+    return {"color": SCHEMES[scheme][1], "linestyle": DEGREES[degree][1], "linewidth": SCHEMES[scheme][2],
+            "zorder": 2 - 0.1 * SCHEMES[scheme][2]}
 
 
 def _label(scheme, degree):

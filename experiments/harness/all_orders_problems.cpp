@@ -386,7 +386,7 @@ const std::vector<OrdersOfFlow>& orders_of_flows() {
 }
 
 double OrdersOfFlow::edge_length(int degree, int level) const {
-  return space_h.at(degree - 1) * std::pow(2.0, -level / 2.0);
+  return space_h.at(degree - 1) * std::pow(2.0, (1 - level) / 2.0);
 }
 
 Row run_all_orders(const OrderRun& run, Row row) {

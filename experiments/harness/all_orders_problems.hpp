@@ -15,7 +15,8 @@ struct OrdersOfFlow {
   std::string flow, problem;
   std::vector<std::string> quantities;  ///< those that decide whether a run is stable
 
-  /// Orders in h: largest edges on level 0, halved after two levels, and step sizes.
+  /// Orders in h: largest edges on level 1, which fall by the factor 2^(-1/2) from level to level, and step
+  /// sizes.
   HalvedSteps space;
   std::vector<double> space_h;  ///< by degree
   std::vector<int> space_k;     ///< by order

@@ -74,8 +74,16 @@ void read_order(const JsonReader& reader, Claim& claim) {
 
 void read_bounds_of(Claim::Kind kind, const JsonReader& reader, Claim& claim) {
   claim.kind = kind;
-  if (!reader.has("at_most") && !reader.has("at_least"))
-    throw InputError(reader.where() + ": a claim of this kind needs 'at_most' or 'at_least'");
+  const bool has_bounds = reader.has("at_most") || reader.has("at_least");
+  if (has_bounds == reader.has("observed"))
+    throw InputError(reader.where() +
+                     ": a claim of this kind needs 'at_most' or 'at_least', or else 'observed'");
+  if (reader.has("observed")) {
+    const double number = reader.number("observed"), margin = Claim::observed_margin * std::abs(number);
+    claim.at_least = number - margin;
+    claim.at_most = number + margin;
+    return;
+  }
   claim.at_most = reader.number_or("at_most", claim.at_most);
   claim.at_least = reader.number_or("at_least", claim.at_least);
 }
@@ -144,7 +152,7 @@ Claim claim_from_json(const Json& json, const std::string& place) {
     known.insert({"variable", "expected", "tolerance", "observed", "cannot_be_told"});
     read_order(reader, claim);
   } else if (kind == "size" || kind == "value") {
-    known.insert("at_least");
+    known.insert({"at_least", "observed"});
     read_bounds_of(kind == "size" ? Claim::size : Claim::value, reader, claim);
   } else {
     throw InputError(reader.where() + ": kind '" + kind + "': expected order, size or value");
@@ -238,6 +246,12 @@ Selection select(const Claim& claim, const Table& table) {
   return selection;
 }
 
+/// "" for a table without preset.
+std::string preset_of(const Table& table) {
+  const auto preset = table.parameters.find("preset");
+  return preset != table.parameters.end() && preset->is_string() ? preset->get<std::string>() : "";
+}
+
 Verdict check_order(const Claim& claim, const Selection& rows) {
   if (*std::max_element(rows.number.begin(), rows.number.end()) < round_off)
     throw InputError(format("all errors are below %g, at round-off", round_off));
@@ -296,10 +310,16 @@ Verdict check_bounds(const Claim& claim, const Selection& rows) {
 
 Reference reference_from_json(const Json& json, const std::string& source) {
   const JsonReader reader(json, source);
-  reader.accept_only({"experiment", "paper", "defaults", "claims"});
+  reader.accept_only({"experiment", "paper", "runs", "defaults", "claims"});
   Reference reference;
   reference.experiment = reader.text("experiment");
   reference.paper = reader.text("paper");
+  if (reader.has("runs")) {
+    const JsonReader runs(reader.object("runs"), source + ", runs");
+    runs.accept_only({"check", "paper"});
+    for (const auto& entry : reader.object("runs").items())
+      reference.runs[entry.key()] = runs.integer(entry.key());
+  }
   const Json defaults = reader.has("defaults") ? reader.object("defaults") : Json::object();
   std::set<std::string> ids;
   std::size_t entries = 0;
@@ -340,16 +360,18 @@ Verdict check_claim(const Claim& claim, const Table& table) {
 }
 
 bool is_as_expected(const Claim& claim, const Verdict& verdict, const Table& table) {
-  const auto preset = table.parameters.find("preset");
-  const bool is_open = preset != table.parameters.end() && preset->is_string() &&
-                       claim.cannot_be_told.count(preset->get<std::string>()) > 0;
+  const bool is_open = claim.cannot_be_told.count(preset_of(table)) > 0;
   return verdict.outcome == (is_open ? Verdict::cannot_be_told : Verdict::holds);
 }
 
+int expected_runs(const Reference& reference, const Table& table) {
+  const auto runs = reference.runs.find(preset_of(table));
+  return runs == reference.runs.end() ? static_cast<int>(table.rows.size()) : runs->second;
+}
+
 bool applies(const Claim& claim, const Table& table) {
-  const auto preset = table.parameters.find("preset");
-  return claim.presets.empty() || preset == table.parameters.end() || !preset->is_string() ||
-         claim.presets.count(preset->get<std::string>()) > 0;
+  const std::string preset = preset_of(table);
+  return claim.presets.empty() || preset.empty() || claim.presets.count(preset) > 0;
 }
 
 }  // namespace esfem

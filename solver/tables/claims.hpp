@@ -38,6 +38,8 @@ struct Claim {
   /// within observed_tolerance of it, so that a lost order is seen.
   std::optional<double> observed;
   static constexpr double observed_tolerance = 0.5;
+  /// size and value: how far the number may be from "observed", relative to it.
+  static constexpr double observed_margin = 0.05;
   /// order: the presets at which the runs are known not to tell. It is an error when they can.
   std::set<std::string> cannot_be_told;
   double at_least = -std::numeric_limits<double>::infinity();
@@ -60,13 +62,16 @@ struct Claim {
 /// "norm" (not of a value), "where": {"flow": "dziuk", "bdf": 4}, "rows": {"tau", "tau_min", "tau_max", "h",
 /// "h_min", "h_max", "from_step"}, "presets": [..], "figures": ["13.1"], ...}]}; order: "variable",
 /// "expected", "tolerance", and "at_most", "observed", "cannot_be_told" (a list of presets) if wanted; size
-/// and value: "at_most" and/or "at_least". "where" selects rows by their labels, rows.tau and rows.h one
-/// value. A claim may have "finding" and "remark". An entry with "for" is a family (claim_families.hpp).
-/// "defaults" beside "claims" has keys for all of them; those of a claim come first.
+/// and value: "at_most" and/or "at_least", or "observed", which are bounds 5% below and above it. "where"
+/// selects rows by their labels, rows.tau and rows.h one value. A claim may have "finding" and "remark". An
+/// entry with "for" is a family (claim_families.hpp). "defaults" beside "claims" has keys for all of them;
+/// those of a claim come first. "runs": {"check": 37, "paper": 176} says how many rows the tables have, so
+/// that a missing one is seen where an order holds without it.
 struct Reference {
   std::string experiment, paper;
   std::vector<Claim> claims;                    ///< the members of a family one after the other
   std::map<std::string, std::string> families;  ///< id -> what its members say together
+  std::map<std::string, int> runs;              ///< preset -> how many rows its table has
 };
 
 /// Throws InputError naming `source`, the claim and the key; unknown keys are errors, and so is a file
@@ -96,6 +101,9 @@ Verdict check_claim(const Claim& claim, const Table& table);
 
 /// Whether the verdict is what the reference says: the claim holds, or cannot be told where it says so.
 bool is_as_expected(const Claim& claim, const Verdict& verdict, const Table& table);
+
+/// How many rows the table of this preset has to have; its own number where the reference does not say.
+int expected_runs(const Reference& reference, const Table& table);
 
 /// Whether the claim is checked at the table's preset, its parameters["preset"]; for a table without one, all
 /// claims are checked.

@@ -129,15 +129,15 @@ TEST(Richardson, OneValueStays) {
   EXPECT_EQ(richardson({Field::Constant(2, 3, 7)}, 1), Field::Constant(2, 3, 7));
 }
 
-/// One run in space on the coarsest mesh.
+/// One run in space on the coarsest mesh that all degrees have.
 Row row_in_space(OrdersOfFlow flow, int degree, int bdf, int k) {
-  return run_all_orders({flow, degree, bdf, false, 0, 0}, planned_row(0, flow.space, k));
+  return run_all_orders({flow, degree, bdf, false, 1, 0}, planned_row(1, flow.space, k));
 }
 
 /// BDF1 in space for the growing sphere with P3, extrapolated as if its error in tau began with that power.
 Row extrapolated_row(int first_power) {
   const OrdersOfFlow flow = flow_named("coupled_diffusion");
-  return run_all_orders({flow, 3, 1, false, 0, 0, first_power}, planned_row(0, flow.space, 6));
+  return run_all_orders({flow, 3, 1, false, 1, 0, first_power}, planned_row(1, flow.space, 6));
 }
 
 TEST(AllOrders, ExtrapolatedInTimeTheErrorIsThatInSpace) {

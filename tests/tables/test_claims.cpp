@@ -349,6 +349,9 @@ TEST(Claims, ReadingNamesClaimAndKey) {
   json claim = size_claim();
   claim.erase("at_most");
   EXPECT_THAT(reading(reference({claim})), HasSubstr("'at_most' or 'at_least'"));
+  claim = size_claim();
+  claim["observed"] = 1e-3;
+  EXPECT_THAT(reading(reference({claim})), HasSubstr("or else 'observed'"));
   claim = order_claim();
   claim.erase("tolerance");
   EXPECT_THAT(reading(reference({claim})), HasSubstr("'tolerance' is missing"));
@@ -367,6 +370,15 @@ TEST(Claims, AnOrderThatIsKnownToBeHigherMustNotBecomeLower) {
   EXPECT_TRUE(verdict(3.2).met());
   EXPECT_FALSE(verdict(4).met());
   EXPECT_THAT(verdict(4).reason, HasSubstr("is not the 4 that is known here"));
+}
+
+TEST(Claims, AnObservedSizeHasBoundsOnBothSides) {
+  json claim = size_claim();
+  claim.erase("at_most");
+  claim["observed"] = 2e-3;
+  const Claim read = reference_from_json(reference({claim}), "r.json").claims.at(0);
+  EXPECT_DOUBLE_EQ(read.at_least, 1.9e-3);
+  EXPECT_DOUBLE_EQ(read.at_most, 2.1e-3);
 }
 
 TEST(Claims, OfThisProjectCanBeRead) {
@@ -435,6 +447,24 @@ TEST_F(CheckOrders, ExitCodesAreTheVerdict) {
   EXPECT_EQ(exit_code("--no-such-option"), exit_usage);
   EXPECT_THAT(output(), HasSubstr("--no-such-option"));
   EXPECT_EQ(exit_code("--help"), exit_done);
+}
+
+TEST_F(CheckOrders, CountTheRunsOfATable) {
+  Table table = sample_table();
+  table.parameters["preset"] = "check";
+  json file = reference({order_claim()});
+  file["runs"] = {{"check", table.rows.size()}};
+  write_file((folder / "mcf_sphere.json").string(), file.dump());
+  const auto exit_code_of_table = [&] {
+    write_file((folder / "table.json").string(), to_json(table).dump());
+    return exit_code((folder / "table.json").string());
+  };
+  EXPECT_EQ(exit_code_of_table(), exit_done);
+  table.rows.pop_back();
+  EXPECT_EQ(exit_code_of_table(), exit_claim);
+  EXPECT_THAT(output(), HasSubstr("runs, expected " + std::to_string(table.rows.size() + 1)));
+  table.parameters["preset"] = "paper";
+  EXPECT_EQ(exit_code_of_table(), exit_done) << "the reference says nothing of this preset";
 }
 
 /// A family of one claim for each norm; that in L2 is at round-off and not met.
