@@ -99,7 +99,7 @@ $(BIN)/check_orders $$tables --output $(3)/verdicts.json >$(3)/verdicts.txt || s
 if [ $$status = 1 ] || [ $$status = 2 ]; then exit $$status; fi
 tail -n 1 $(3)/verdicts.txt
 # What each claim catches; the exit code 3 says that some miss a spoiled table, which claims-check judges.
-catches=results/$(1)/catches.json
+catches=$(3)/catches.json
 if [ ! -f $$catches ] || [ -n "$$(find reference tests/claims $(BIN)/check_orders $$tables -type f -newer $$catches)" ]; then
   $(PYTHON) tests/claims/spoil.py --build $(BUILD) --json $$catches results/$(1) >/dev/null || [ $$? = 3 ]
 fi
@@ -225,7 +225,8 @@ plots-check:
 
 # Whether the checks of claims can fail: on spoiled tables.
 claims-check:
-	@$(PYTHON) tests/claims/spoil.py --build $(BUILD) --known tests/claims/known.txt --json results/check/catches.json results/check
+	@mkdir -p $(BUILD)/report-check
+	$(PYTHON) tests/claims/spoil.py --build $(BUILD) --known tests/claims/known.txt --json $(BUILD)/report-check/catches.json results/check
 verdicts:
 	@$(if $(stems),$(BIN)/check_orders $(stems:%=results/check/%.json),echo "no experiments")
 

@@ -13,7 +13,7 @@ Each claim that is met has to fail, or no longer to be told, when
 - the finest run of each variant is missing: check_orders counts the runs of a table.
 Exempt are bounds at round-off, 1e-9 and less, and numbers that are zero: twice zero is zero, and what is at round-off jumps by
 more than a factor when it is wrong. The claims in --known, "STEM ID: what it does not see  # why" a line, are known not to see it:
-they are to become fewer. --json writes what each claim catches, {"STEM ID": ["half an order less in h", ..]}. Exit code 0 when the
+they are to become fewer. --json writes what each claim catches, {STEM: {ID: ["half an order less in h", ..]}}. Exit code 0 when the
 others fail as they should and no line of --known has become wrong, 3 otherwise."""
 import argparse
 import concurrent.futures
@@ -30,7 +30,6 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROUND_OFF = 1e-9
 QUANTITY, NORM, RUN = "errors of another quantity", "nodal and lifted norms exchanged", "a run missing"
 EXCHANGES = (QUANTITY, NORM)
-CATCHES = "catches.json"
 
 
 def scaled_errors(table, factor):
@@ -185,8 +184,7 @@ def main():
     parser.add_argument("--known", type=pathlib.Path)
     parser.add_argument("--json", type=pathlib.Path)
     arguments = parser.parse_args()
-    tables = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(arguments.folder.glob("*.json"))
-              if path.name != CATCHES]
+    tables = [json.loads(path.read_text(encoding="utf-8")) for path in sorted(arguments.folder.glob("*.json"))]
     if not tables:
         sys.exit(f"{arguments.folder}: there are no tables")
     good, _ = verdicts(arguments.build, tables)
@@ -211,7 +209,11 @@ def main():
         if missed:
             blind.append(f"{name}: {', '.join(missed)}")
     if arguments.json:
-        arguments.json.write_text(json.dumps(seen, indent=1) + "\n", encoding="utf-8")
+        catches = {}
+        for name, words in seen.items():
+            stem, claim = name.split(" ")
+            catches.setdefault(stem, {})[claim] = words
+        arguments.json.write_text(json.dumps(catches, indent=1) + "\n", encoding="utf-8")
     lines = arguments.known.read_text(encoding="utf-8").splitlines() if arguments.known else []
     known = {line.split("  # ")[0] for line in lines if line and not line.startswith("#")}
     for line in sorted(set(blind) - known):

@@ -60,8 +60,7 @@ TEST(SphereModes, DecayLikeOneMinusFourTUnderMeanCurvatureFlow) {
 //   (2.12b)  V = Q,   Q = H (2 rho²/R² - H²/2), and Q = 0 for surface diffusion;
 //   (2.12d)  z = Lap nu + |A|² nu = 2 rho (rho² - 1) n/R²;
 //   (2.12a)  H' = -|A|² V = -2 rho² V/R²;
-//   (2.12c)  rho' n = -Lap z + (H A - A²) z + Q (2/R - H rho) n, where int Q div phi = int Q (2/R) n . phi,
-//   so
+//   (2.12c)  rho' n = -Lap z + (H A - A²) z + Q (2/R - H rho) n, as int Q div phi = int Q (2/R) n . phi;
 //            rho' = 4 rho (rho² - 1)/R⁴ + Q (2/R - H rho);
 //   (2.11b)  R' = V rho.
 // Linearised at rho = 1, H = 2/R, the last term of rho' is of second order: the rate is 8/R⁴ for both flows.
@@ -110,7 +109,7 @@ TEST(LengthOfNormals, OfSurfaceDiffusionIsThatOfTheNonlinearLaw) {
     const double t = 0.05 * std::pow(R, 4);
     for (const double rho : {1.2, 0.8}) {
       const Eigen::Vector3d end = run_with_length(rho, R, t, variant);
-      EXPECT_NEAR(end[2], length_of_normals(rho, R, t), 2e-3) << rho << " " << R;
+      EXPECT_NEAR(end[2], length_of_normals(rho, R, t), 1e-4) << rho << " " << R;
       // The linearised law is another one.
       EXPECT_GT(std::abs(end[2] - 1 - (rho - 1) * std::exp(0.4)), 0.02) << rho << " " << R;
     }
@@ -125,10 +124,10 @@ TEST(LengthOfNormals, OfWillmoreFlowMovesTheSphere) {
   for (const double rho : {1.2, 0.8}) {
     const Eigen::Vector3d end = run_with_length(rho, 1, 0.05, variant);
     const Eigen::Vector3d law = round_willmore({1, 2, rho}, 0.05);
-    for (int i = 0; i < 3; ++i) EXPECT_NEAR(end[i], law[i], 3e-3) << rho << ", component " << i;
-    // Without Q in it the law of rho is another one, and the sphere would not move.
-    EXPECT_GT(std::abs(end[2] - length_of_normals(rho, 1, 0.05)), 0.01) << rho;
-    EXPECT_GT(std::abs(end[0] - 1), 0.02) << rho;
+    for (int i = 0; i < 3; ++i) EXPECT_NEAR(end[i], law[i], 1.5e-4) << rho << ", component " << i;
+    // Without Q in it the law of rho is another one (1.356 for 1.266, 0.737 for 0.671), and R stays 1.
+    EXPECT_GT(std::abs(end[2] - length_of_normals(rho, 1, 0.05)), 0.05) << rho;
+    EXPECT_GT(std::abs(end[0] - 1), 0.05) << rho;
   }
 }
 
