@@ -194,10 +194,10 @@ class Report(unittest.TestCase):
 
     def test_remarks_link_to_the_claims_that_they_name(self):
         page, words = self.page(claim("a", remark="see u-fine and runs, not elsewhere-checked; no claims: well-known, runs"),
-                                claim("u-fine"), claim("runs"), claim("b", remark="see not-at-this-preset"))
+                                claim("u-fine"), claim("runs"), claim("b", remark="see not-at-this-preset and H-tau"))
         for name in ("u-fine", "runs"):
             self.assertEqual(page.count(f'<a href="#mcf_sphere.{name}" title='), 1)
-        self.assertIn("see not-at-this-preset, checked at the other preset", words)
+        self.assertIn("see not-at-this-preset and H-tau, checked at the other preset", words)
 
     def test_committed_remarks_name_claims_that_exist(self):
         known, named = [], []
