@@ -82,7 +82,7 @@ class Numbers:
             changes = re.fullmatch(r"(\S+), (.*)", measured)
             return arrow(f"{changes[1]} ({changes[2]})" if changes else measured.replace("-", "none") if measured == "-" else measured)
         number = float(re.match(r"[-+.\de]+", measured)[0])
-        return f"{number:.2f}" if words[2] == "order" else format(number, words[2]).replace("-", "−", 1)
+        return f"{number:.2f}" if words[2] == "order" else re.sub(r"e([-+])0", r"e\1", re.sub("^-", "−", format(number, words[2])))
 
     def _order(self, stem, quantity, norm, variable, labels, where):
         for fit in self.tables[stem].get("fits", []):

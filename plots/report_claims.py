@@ -10,6 +10,8 @@ CLASSES = {"reproduced": "reproduced", "reproduced, but": "but", "corrected": "c
            "cannot be told": "untold", "claim not met": "open", "holds": "holds"}
 PRINTED_CHECKS = 80
 WORD = re.compile(r"[A-Za-z0-9][\w.-]*\w")
+NAME = r"[a-zA-Z]\w*(?:-\w+)+"
+ELSEWHERE = re.compile(rf"\bsee {NAME}(?:(?:, | and ){NAME})*\b")
 
 
 def badge(name):
@@ -42,7 +44,7 @@ class Links:
                 claim = self.known[target]
                 made.append(link(target, tag("code", html.escape(part)), title=claim["statement"]))
             else:
-                made.append(re.sub(r"\bsee ([a-z]\w*(?:-\w+)+)\b", r"see \1, checked at the other preset", text(part)))
+                made.append(_with_names(part))
         return "".join(made)
 
     def caught(self, stem, name):
@@ -61,6 +63,15 @@ class Links:
                 parts += [(words[done:match.start()], None), (match[0], found[0])]
                 done = match.end()
         return parts + [(words[done:], None)]
+
+
+def _with_names(words):
+    """Words that name no claim of the page as HTML; names of other claims stay as they are."""
+    made, done = [], 0
+    for match in ELSEWHERE.finditer(words):
+        made += [text(words[done:match.start()]), html.escape(match[0]), ", checked at the other preset"]
+        done = match.end()
+    return "".join(made) + text(words[done:])
 
 
 def claim_rows(statement, links):

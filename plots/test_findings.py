@@ -110,6 +110,7 @@ class Numbers(unittest.TestCase):
         self.assertEqual(self.filled("mcf_sphere a"), "2.95 ± 0.16")
         self.assertEqual(self.filled("mcf_sphere a order"), "2.95")
         self.assertEqual(self.filled("mcf_sphere b .4f"), "0.0769")
+        self.assertEqual(self.filled("mcf_sphere b .1e"), "7.7e-2")
         self.assertEqual(self.filled("mcf_sphere c"), "2.0 → 2.4")
         self.assertEqual(self.filled("order mcf_sphere x lifted_H1 h bdf=3"), "2.50 ± 0.10")
         self.assertEqual(self.filled("rows mcf_sphere"), "2")

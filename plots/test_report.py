@@ -17,6 +17,7 @@ from PIL import Image
 import gallery
 import report
 import style
+from report_content import PAPERS
 from report_data import Statement, figure_verdict, grouped, place, read_results, verdict
 from report_export import exports
 from report_html import small_png, text
@@ -168,6 +169,13 @@ class Report(unittest.TestCase):
         self.assertEqual({key: len(statements) for key, statements in placed.items()},
                          {("kll19", "13.1"): 1, ("kll19", ""): 1, ("kll19", "mcf_sphere"): 1, ("kll19", "13.2"): 1})
 
+    def test_each_published_figure_has_a_sentence_without_numbers(self):
+        for paper in PAPERS:
+            for number in dict.fromkeys(figure.number for figure in paper.figures):
+                found = next(figure.found for figure in paper.figures if figure.number == number)
+                self.assertRegex(found, r"^[A-Z].*\.$", f"{paper.key} {number}")
+                self.assertNotRegex(re.sub("[HL][12]", "", found), r"\d", f"{paper.key} {number}: numbers come from tables")
+
     def test_a_figure_that_does_not_exist_is_an_error(self):
         for wrong in (claim("a", figures=["13.9"]), claim("a", figures=["7.1"]), claim("a", figures=["13.1", "1"])):
             with self.assertRaisesRegex(TableError, r"mcf_sphere: claim a: there is no figure .* of kll19; known are 13.1, "):
@@ -186,10 +194,10 @@ class Report(unittest.TestCase):
 
     def test_remarks_link_to_the_claims_that_they_name(self):
         page, words = self.page(claim("a", remark="see u-fine and runs, not elsewhere-checked; no claims: well-known, runs"),
-                                claim("u-fine"), claim("runs"), claim("b", remark="see not-at-this-preset"))
+                                claim("u-fine"), claim("runs"), claim("b", remark="see not-at-this-preset and H-tau"))
         for name in ("u-fine", "runs"):
             self.assertEqual(page.count(f'<a href="#mcf_sphere.{name}" title='), 1)
-        self.assertIn("see not-at-this-preset, checked at the other preset", words)
+        self.assertIn("see not-at-this-preset and H-tau, checked at the other preset", words)
 
     def test_committed_remarks_name_claims_that_exist(self):
         known, named = [], []
