@@ -68,7 +68,8 @@ int main(int argc, char** argv) {
     if (file.empty()) throw InputError("config is required: expected CONFIG.json (see --help)");
     set_thread_count(threads);
     const json origin = provenance(argc, argv);
-    if (sets.empty() && request.output.empty() && !request.list) return evolve(file, origin);
+    const bool asks_for_cells = request.list || !request.cell.empty() || !request.collect_from.empty();
+    if (sets.empty() && request.output.empty() && !asks_for_cells) return evolve(file, origin);
     sweep(read_json(file), file, sets, request, origin);
     return static_cast<int>(exit_done);
   });

@@ -189,14 +189,14 @@ std::string sweep_help() {
   return "Sweeps: evolve CONFIG.json --set parameters.gamma=10,20,30 --set tau=0.01,0.005 --output FOLDER "
          "runs all\n"
          "combinations of these values. A dotted path names a key of the configuration "
-         "(kinetics.diffusion.1: the second entry of\n"
-         "an array). Values are JSON, or words (--set flow=dziuk,bgn). A row has the values (labels; tau and "
-         "steps as\n"
-         "tau and steps), the last value of each series, min_F and max_F of each field F at the end (of "
-         "vectors max_F,\n"
-         "of their lengths), seconds, status, and with \"exact\", or where the flow has an exact solution, "
-         "the maxima over time of\n"
-         "the errors. plots/sweep.py draws the table. " +
+         "(kinetics.diffusion.1: the second\n"
+         "entry of an array). Values are JSON, or words (--set flow=dziuk,bgn). A row has the values (as "
+         "labels; tau and\n"
+         "steps are columns of their own), the last value of each series (\"h_end\" for h), min_F and max_F "
+         "of each field F at\n"
+         "the end (of vectors max_F, of their lengths), and with \"exact\", or where the flow has an exact "
+         "solution, the\n"
+         "maxima over time of the errors. plots/sweep.py draws the table.\n" +
          kept_cells_help("evolve", "--set .. --set ..");
 }
 

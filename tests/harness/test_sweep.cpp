@@ -144,8 +144,10 @@ TEST_F(SweepProgram, UnknownKeysAndBadValuesAreThoseOfTheConfiguration) {
   EXPECT_FALSE(std::filesystem::exists(output));
   EXPECT_EQ(sweep("--set mesh.subdivisons=1 --output " + output), 1);
   EXPECT_THAT(message, HasSubstr("subdivisons"));
-  EXPECT_EQ(sweep("--set tau=0.1"), 1);
-  EXPECT_THAT(message, HasSubstr("--output"));
+  for (const char* without_folder : {"--set tau=0.1", "--cell run", "--collect out"}) {
+    EXPECT_EQ(sweep(without_folder), 1);
+    EXPECT_THAT(message, HasSubstr("--output is required"));
+  }
 }
 
 TEST_F(SweepProgram, ARunThatEndsEarlyIsARowWithItsValues) {
