@@ -103,7 +103,7 @@ catches=$(3)/catches.json
 if [ ! -f $$catches ] || [ -n "$$(find reference tests/claims $(BIN)/check_orders $$tables -type f -newer $$catches)" ]; then
   $(PYTHON) tests/claims/spoil.py --build $(BUILD) --json $$catches results/$(1) >/dev/null || [ $$? = 3 ]
 fi
-$(PYTHON) plots/report.py $(3)/verdicts.json $(2) $(3) $(4)
+$(PYTHON) plots/report.py $(3)/verdicts.json $(2) $(3) --catches $$catches $(4)
 endef
 report: prepare-report
 	@$(call report_of,paper,figures,report)

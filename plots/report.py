@@ -159,7 +159,7 @@ def main():
     parser.add_argument("figures", help="e.g. figures")
     parser.add_argument("output", help="e.g. report")
     parser.add_argument("--reference", default="reference", help="folder of the claims (default: reference)")
-    parser.add_argument("--catches", default="tests/claims/catches.json",
+    parser.add_argument("--catches", default="report/catches.json",
                         help='{STEM: {CLAIM: ["broken variant", ..]}}, shown beside the claims where the file is there (default: %(default)s)')
     parser.add_argument("--expect", choices=("tables", "everything"),
                         help="exit 1 when there is no table of an experiment, or anything is missing; the report is written")
