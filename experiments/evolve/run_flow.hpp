@@ -95,6 +95,7 @@ std::vector<double> units_of_controlled(double L) {
 template <class State>
 void record_more(const Run&, const State&) {}
 void record_more(const Run& run, const CahnHilliardState& state);
+void record_more(const Run& run, const WillmoreFlow::State& state);
 
 /// Integrates from the start, or from where the history of an earlier run ends, and records every step.
 template <class Flow>

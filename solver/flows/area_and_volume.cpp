@@ -2,6 +2,7 @@
 #include "solver/flows/area_and_volume.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
@@ -22,6 +23,11 @@ bool solve(const Eigen::Matrix2d& G, const Eigen::Vector2d& r, Eigen::Vector2d& 
   lambda << (r[0] * G(1, 1) - r[1] * G(0, 1)) / determinant, (r[1] * G(0, 0) - r[0] * G(1, 0)) / determinant;
   return true;
 }
+
+/// Relative residuals of area and volume. Divided by tau they are errors of lambda, and so of V: so the
+/// iteration goes on until round-off ends it: below the first of these numbers, or, as sums over many
+/// elements are less accurate, where the residual falls no more below the second.
+constexpr double tolerance = 1e-15, largest_round_off = 1e-13;
 
 const char* const dependent =
     "area and volume cannot both be prescribed: where H is constant, as on a sphere, a change of one is a "
@@ -85,7 +91,9 @@ bool Multipliers::correct(double t, const Field& x, const std::array<Field, 2>& 
   const int count = static_cast<int>(unknowns_.size());
   Eigen::Vector2d residual = Eigen::Vector2d::Zero();
   for (int k = 0; k < count; ++k) residual[k] = relative_residual(unknowns_[k], t, x);
-  if (!(residual.cwiseAbs().maxCoeff() > tolerance)) return false;
+  const double size = residual.cwiseAbs().maxCoeff(),
+               previous = std::exchange(previous_residual_, std::numeric_limits<double>::infinity());
+  if (size <= tolerance || (size <= largest_round_off && size > 0.1 * previous)) return false;
 
   // The derivatives of area and volume in direction phi are int div phi and int n . phi.
   const auto gradients = [](const PointData<0>& p, Integrand<6, 3>& load) {
@@ -109,6 +117,7 @@ bool Multipliers::correct(double t, const Field& x, const std::array<Field, 2>& 
   }
   if (!solve(J, residual, correction)) throw NumericsError(dependent);
   for (int l = 0; l < count; ++l) lambda(0, unknowns_[l]) -= correction[l] / scale[l];
+  previous_residual_ = size;
   return true;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "solver/assembly/surface_space.hpp"
@@ -55,10 +56,9 @@ class Multipliers {
   /// One step of Newton's method for the multipliers at time t. x: the nodes for the present ones; x_rates:
   /// their derivatives (N x 3) with respect to each of the unknowns(). Adds the correction to lambda (1 x 2)
   /// and returns true; returns false, and leaves lambda as it is, when area and volume are the prescribed
-  /// ones up to `tolerance`. Throws NumericsError when the unknowns are not independent.
+  /// ones up to round-off. Throws NumericsError when the unknowns are not independent.
   bool correct(double t, const Field& x, const std::array<Field, 2>& x_rates, Field& lambda);
 
-  static constexpr double tolerance = 2e-14;  ///< relative
   static constexpr int most_iterations = 20;
 
  private:
@@ -68,6 +68,7 @@ class Multipliers {
   AreaAndVolume prescribed_;
   std::vector<Quantity> unknowns_;
   Field gradients_;  ///< N x 6: of area and volume with respect to x
+  double previous_residual_ = std::numeric_limits<double>::infinity();  ///< of this Newton iteration
 };
 
 /// -H or -1: what the multiplier of a quantity is multiplied by in Q.
