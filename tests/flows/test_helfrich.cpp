@@ -262,6 +262,33 @@ TEST(Helfrich, ASphereIsStationaryWithItsMultiplier) {
   }
 }
 
+TEST(Helfrich, TheCliffordTorusIsStationaryWithSpontaneousCurvature) {
+  // |A|² = H² - 2 K, and K = H/r - 1/r² with the minor radius r, so what H_0 adds to Q is 2 H_0 K - H_0² H/2
+  // = lambda_A H + lambda_V.
+  const double r = std::sqrt(0.5), H_0 = 1;
+  const Surface surface = torus(1, r);
+  const Mesh mesh = torus_mesh(1, r, 2, 16, 12);
+  const SurfaceSpace space(mesh);
+  Variant variant;
+  variant.law = helfrich_law(H_0);
+  variant.projection = Variant::none;
+  variant.prescribed = {constant_target(space.area(mesh.nodes)), constant_target(space.volume(mesh.nodes))};
+  const auto start = [&](const WillmoreLaw& law) {
+    return willmore_start_on(space, surface, mesh.nodes, law, true, variant.prescribed);
+  };
+  const WillmoreStart right = start(variant.law);
+  EXPECT_LT(right.state.w.col(0).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_NEAR(right.state.lambda(0, Multipliers::area), 2 * H_0 / r - H_0 * H_0 / 2, 1e-9);
+  EXPECT_NEAR(right.state.lambda(0, Multipliers::volume), -2 * H_0 / (r * r), 1e-9);
+  const WillmoreStart wrong = start(
+      [H_0](const WillmorePoint& at, Pack& Q) { Q = (at.H - H_0) * (at.A_squared - 0.5 * at.H * at.H); });
+  EXPECT_GT(wrong.state.w.col(0).cwiseAbs().maxCoeff(), 0.1);
+  // The errors of (3.5a) move the nodes.
+  WillmoreFlow flow(space, variant, right.theta);
+  const State end = last_state(flow, {1, 1e-3, 5, {}}, right.state);
+  EXPECT_LT((end.x - mesh.nodes).cwiseAbs().maxCoeff(), 1e-5);
+}
+
 TEST(Helfrich, OnASphereAreaAndVolumeCannotBothBePrescribed) {
   const Mesh mesh = sphere_mesh(1, 2, 2);
   const SurfaceSpace space(mesh);
