@@ -3,11 +3,10 @@
 
 Usage: python3 plots/helfrich_vesicles.py results/paper/helfrich_vesicles.json figures
 Writes figures/gallery/helfrich_energies.{pdf,png}: the energy over the reduced volume, on the branches of prolate and
-oblate shapes, and the errors of energies over the number of triangles, beside those of others' codes; and
+oblate shapes, and the errors of energies over the number of nodes, beside those of others' codes; and
 figures/gallery/helfrich_vesicles.{pdf,png}: the shapes.
 """
 import json
-import math
 import os
 
 import numpy as np
@@ -27,7 +26,7 @@ BRANCHES = {"prolate": ("prolate", style.BLUE, "o"), "oblate": ("oblate", style.
 PICTURED = ("prolate", "oblate")
 TILT = 20
 ENERGY = "$E/(8\\pi)$ over the reduced volume"
-ERROR = "error of $E/(8\\pi)$ over the triangles"
+ERROR = "relative error of $E$ over the number of nodes"
 
 
 def draw(table, folder):
@@ -56,11 +55,6 @@ def _curvature(row):
 def _name(row):
     branch = BRANCHES.get(label_of(row, "branch"), (label_of(row, "branch"),))[0]
     return f"{branch}, $v = {label_of(row, 'volume')}$"
-
-
-def _triangles(row):
-    """Of a closed surface without handles whose elements are of degree 2: N = 2 T + 2."""
-    return (row["nodes"] - 2) / 2
 
 
 def branch_curve(shapes):
@@ -107,15 +101,16 @@ def energies_figure(rows, notes):
         if _curvature(row) == 0:
             left.plot(_volume(row), row["values"]["energy"], **style_of)
         error = row["errors"]["energy"]["surface"]
-        right.loglog(_triangles(row), error / row["values"]["reference_energy"], **style_of)
-    right.loglog(others["triangles"], others["relative_error"], color="black", marker="x", linestyle="none", gid="others")
-    low, high = min(map(_triangles, rows)), max(map(_triangles, rows))
+        right.loglog(row["nodes"], error / row["values"]["reference_energy"], **style_of)
+    vertices = [count / 2 + 2 for count in others["triangles"]]  # of a closed surface without handles
+    right.loglog(vertices, others["relative_error"], color="black", marker="x", linestyle="none", gid="others")
+    low, high = (extreme(row["nodes"] for row in rows) for extreme in (min, max))
     top = max(row["errors"]["energy"]["surface"] / row["values"]["reference_energy"] for row in rows)
     right.loglog([low, high], [2 * top, 2 * top * (low / high)**2], color="0.5", linestyle=style.DASHES["dashed"],
                  linewidth=0.8, gid="slope")
     right.annotate("$h^4$", (high, 2 * top * (low / high)**2), (3, 0), textcoords="offset points", color="0.4")
     left.set_xlabel("$v$", labelpad=1)
-    right.set_xlabel("triangles", labelpad=1)
+    right.set_xlabel("nodes", labelpad=1)
     return figure
 
 
