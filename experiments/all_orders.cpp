@@ -24,7 +24,8 @@
 // Problems: mean curvature flow, (5.1) of kll19 and Dziuk's scheme, on the self-shrinking torus; generalised
 // mean curvature flow with V = H², in space of a sphere, in time of an ellipsoid; nick18's growing sphere;
 // Willmore flow without projections, in space on the Clifford torus until t = 0.02 (later
-// |nu_h| leaves 1, like exp(100t) at the hole), in time of an ellipsoid; bk22's evolving ellipsoid.
+// |nu_h| leaves 1, like exp(100t) at the hole), in time of an ellipsoid; Helfrich flow with H_0 = 1 of the
+// same surfaces, which keeps area and volume; bk22's evolving ellipsoid.
 //
 // Expected: q in tau; k in h in H1 (kll19 Theorem 6.1, nick18 Theorem 2.1, kll21 Theorem 4.1 for k >= 2, bk22
 // Theorem 4.1 for k >= 1), k + 1 in L2. All of it is observed, also for k = 1 and q = 1. But for Dziuk's
@@ -77,11 +78,21 @@ Block otherwise(bool paper) {
           {"step", range(0, step_count - 1)}};
 }
 
-/// Check: P2 and BDF2, of Dziuk's scheme that BDF4 is unstable.
-std::vector<Block> preset(bool paper) {
-  if (paper) return {{}};
+/// All flows but one.
+std::vector<std::string> flows_without(const std::string& name) {
   std::vector<std::string> others = known_flows();
-  others.erase(std::find(others.begin(), others.end(), "dziuk"));
+  others.erase(std::find(others.begin(), others.end(), name));
+  return others;
+}
+
+/// Paper: all, of Helfrich flow P2, and P1 and P3 with BDF2. Check: P2 and BDF2, of Dziuk's scheme that BDF4
+/// is unstable.
+std::vector<Block> preset(bool paper) {
+  if (paper)
+    return {{{"flow", flows_without("helfrich")}},
+            {{"flow", "helfrich"}, {"degree", 2}},
+            {{"flow", "helfrich"}, {"degree", {1, 3}}, {"bdf", 2}}};
+  const std::vector<std::string> others = flows_without("dziuk");
   return {{{"flow", others}}, {{"flow", "dziuk"}, {"bdf", 4}, {"run", "space"}}};
 }
 

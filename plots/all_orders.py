@@ -24,6 +24,7 @@ FLOWS = {
     "generalised_mean_curvature": (r"generalised mean curvature flow, $V = H^2$", ("x", "v", "nu", "V")),
     "coupled_diffusion": ("surface coupled to diffusion", ("x", "v", "u")),
     "willmore": ("Willmore flow", ("x", "nu", "H")),
+    "helfrich": ("Helfrich flow", ("x", "nu", "H")),
     "cahn_hilliard": ("Cahn–Hilliard", ("u", "w")),
 }
 NAMES = {"nu": r"\nu"}

@@ -80,6 +80,7 @@ std::vector<Entry> dziuk_entries();
 std::vector<Entry> bgn_entries();
 std::vector<Entry> generalised_mean_curvature_entries();
 std::vector<Entry> willmore_entries();
+std::vector<Entry> helfrich_entries();
 std::vector<Entry> willmore_competitor_entries();
 std::vector<Entry> coupled_diffusion_entries();
 std::vector<Entry> kinetics_entries();

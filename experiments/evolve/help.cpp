@@ -9,6 +9,8 @@ namespace {
 /// "ritz" | "interpolation", or true | false | "coefficients": the default comes first
 std::string values_of(const Key& key) {
   std::string values = key.otherwise.is_null() ? "none" : key.otherwise.dump();
+  if (key.kind == Key::words_of) return values;
+  if (key.kind == Key::number_or_formula) values += " | \"formula\"";
   if (key.kind == Key::truth_or_word) values += key.otherwise == true ? " | false" : " | true";
   for (const std::string& word : key.words)
     if (word != key.otherwise) values += " | \"" + word + "\"";
@@ -109,7 +111,7 @@ std::string evolve_config_help() {
             "seconds": 3600},                 wall-clock time of this command; default: none of these
    "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
                 "tolerance": 1e-3,            follow the solution; root mean square of x/L (dziuk, bgn), nu and L H
-                                              (mean_curvature, willmore, surface_diffusion) or u (coupled_diffusion,
+                                              (mean_curvature, willmore, surface_diffusion, helfrich) or u (coupled_diffusion,
                                               phase_separation)
                 "first_step": 1e-6 T,         not controlled, so smaller than end_time (default: at most a tenth)
                 "largest_step": 0.01},        default: no bound
@@ -145,8 +147,9 @@ the edges 01, 12, 20, then inner ones). node_numbers are the numbers of the node
 A run starts from those nodal values of its mesh file ($NodeData of .msh, point data of .vtu, real properties of the vertices
 of .ply: H, or nu_x, nu_y, nu_z) that are listed with its flow ("starts from"), and reports this. t starts at 0, and defaults are relative to the length of this surface: to continue with
 the parameters of an earlier run, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H,
-h, worst_angle (degrees), worst_radius_ratio; if the flow has nu, also min_nu and max_nu; for willmore and surface_diffusion
-kappa_energy, 1/2 int |kappa|² of the surface itself; with "exact" the errors u_nodal_L2, u_nodal_H1 and
+h, worst_angle (degrees), worst_radius_ratio; if the flow has nu, also min_nu and max_nu; for willmore, surface_diffusion and
+helfrich kappa_energy, 1/2 int |kappa|² of the surface itself; for helfrich helfrich_energy, 1/2 int (H - H_0)², and the
+multipliers lambda_A and lambda_V; with "exact" the errors u_nodal_L2, u_nodal_H1 and
 u_nodal_H1_semi of each field that has a formula, and u_lifted_L2, .. by quadrature on the exact surface, where it is known (at
 rest, "velocity" or "exact" with a level_set), else u_unlifted_L2, .. on the discrete one; with "x" in it, the trajectories of
 the nodes (of x, y, z at the start, and t), in the exact nodes; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +

@@ -97,6 +97,7 @@ std::vector<double> units_of_controlled(double L) {
 template <class State>
 void record_more(const Run&, const State&) {}
 void record_more(const Run& run, const CahnHilliardState& state);
+void record_more(const Run& run, const WillmoreFlow::State& state);
 
 /// The errors of a state against the exact solution, among the series.
 template <class State>

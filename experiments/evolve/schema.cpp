@@ -32,6 +32,12 @@ json schema_of(const Key& key) {
     schema["enum"] = {true, false};
     for (const std::string& word : key.words) schema["enum"].push_back(word);
     break;
+  case Key::words_of:
+    schema.update({{"type", "array"}, {"items", {{"enum", key.words}}}, {"uniqueItems", true}});
+    break;
+  case Key::number_or_formula:
+    schema.update(formula_schema());
+    break;
   case Key::seed:
     schema.update({{"type", "integer"}, {"minimum", 0}, {"maximum", 1000000}});
     break;

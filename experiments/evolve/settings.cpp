@@ -30,6 +30,21 @@ json known_word(const JsonReader& reader, const Key& key) {
                    listed(known));
 }
 
+json known_words(const JsonReader& reader, const Key& key) {
+  const json& words = reader.array(key.name);
+  for (const json& word : words)
+    if (std::find(key.words.begin(), key.words.end(), word) == key.words.end())
+      throw InputError(reader.where() + ": " + key.name + ": found " + word.dump() + "; expected one of " +
+                       listed({key.words.begin(), key.words.end()}));
+  return words;
+}
+
+json number_or_text(const JsonReader& reader, const Key& key) {
+  const json& value = reader.value(key.name);
+  if (value.is_string()) return value;
+  return reader.number(key.name);
+}
+
 json value_of(const JsonReader& reader, const Key& key) {
   switch (key.kind) {
   case Key::truth:
@@ -41,6 +56,10 @@ json value_of(const JsonReader& reader, const Key& key) {
   case Key::truth_or_word:
     if (const json value = reader.truth_or_text(key.name); value.is_boolean()) return value;
     return known_word(reader, key);
+  case Key::words_of:
+    return known_words(reader, key);
+  case Key::number_or_formula:
+    return number_or_text(reader, key);
   default:
     return number_in(reader, key);
   }
@@ -64,6 +83,11 @@ Settings::Settings(const json& given, const std::vector<Key>& keys, const std::s
       defaults_.push_back(key);
     }
   }
+}
+
+bool Settings::has_word(const std::string& key, const char* word) const {
+  const json& words = values_.at(key);
+  return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::map<std::string, double> Settings::numbers() const {

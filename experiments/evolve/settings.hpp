@@ -10,12 +10,22 @@ namespace esfem {
 
 /// A key of "variant" or "parameters" of a configuration.
 struct Key {
-  enum Kind { number, positive, not_negative, truth, seed, word, truth_or_word } kind;
+  enum Kind {
+    number,
+    positive,
+    not_negative,
+    truth,
+    seed,
+    word,
+    truth_or_word,
+    words_of,  ///< a list of some of the words
+    number_or_formula
+  } kind;
   std::string name;
   nlohmann::json otherwise;  ///< its default; null: none
   std::string help;
   int length_power = 0;                 ///< the default is in units of L to this power
-  std::vector<std::string> words = {};  ///< what a word may be
+  std::vector<std::string> words = {};  ///< what a word may be, or one of a list
 };
 /// A word; the first one is the default.
 inline Key word(const std::string& name, const std::vector<std::string>& words, const std::string& help) {
@@ -36,6 +46,10 @@ class Settings {
   int integer(const std::string& key) const { return values_.at(key).get<int>(); }
   bool truth(const std::string& key) const { return values_.at(key).get<bool>(); }
   bool is(const std::string& key, const char* word) const { return values_.at(key) == word; }
+  /// Whether a list has the word.
+  bool has_word(const std::string& key, const char* word) const;
+  /// A formula.
+  std::string text(const std::string& key) const { return values_.at(key).get<std::string>(); }
   /// All that are numbers.
   std::map<std::string, double> numbers() const;
   double number_or(const std::string& key, double otherwise) const {

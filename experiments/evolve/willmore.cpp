@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/willmore.hpp"
+
 #include "experiments/evolve/advice.hpp"
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/evolve/start.hpp"
@@ -14,9 +16,10 @@ Variant::Projection projection_of(const Settings& asked) {
   return asked.truth("project") ? Variant::after_steps : Variant::none;
 }
 
-Variant willmore_variant(const Settings& asked, const WillmoreLaw& law) {
+Variant willmore_variant(const Settings& asked, const WillmoreProblem& problem) {
   Variant variant;
-  variant.law = law;
+  variant.law = problem.law;
+  variant.prescribed = problem.prescribed;
   variant.F = asked.is("F", "extrapolated") ? Variant::extrapolated : Variant::implicit;
   variant.projection = projection_of(asked);
   variant.relaxation = asked.number("relaxation");
@@ -35,21 +38,25 @@ void check_theta(const EvolveConfig& config, const std::string& source) {
         source + ": variant: theta needs exact initial data; expected a \"surface\", or \"theta\": false");
 }
 
-WillmoreStart willmore_start(const Run& run, const WillmoreLaw& law) {
+WillmoreStart willmore_start(const Run& run, const WillmoreProblem& problem) {
   const EvolveConfig& config = run.config;
   const Field& x0 = config.mesh.nodes;
+  const auto& [law, prescribed] = problem;
   const Field nu_H = start_values(config, {"nu", "H"}), all = start_values(config, {"nu", "H", "V", "z"});
   if (nu_H.size() > 0) {
     Field u(nu_H.rows(), 4);
     u << nu_H.col(3), nu_H.leftCols(3);
     const Field w = all.size() > 0 ? Field(all.rightCols(4)) : Field();
-    return willmore_start_from(run.space, x0, std::move(u), w, law);
+    return willmore_start_from(run.space, x0, std::move(u), w, law, prescribed);
   }
-  return config.surface ? willmore_start_on(run.space, *config.surface, x0, law, has_theta(config))
-                        : discrete_willmore_start(run.space, x0, law);
+  return config.surface
+             ? willmore_start_on(run.space, *config.surface, x0, law, has_theta(config), prescribed)
+             : discrete_willmore_start(run.space, x0, law, prescribed);
 }
 
-Entry willmore_entry(const WillmoreLaw& law) {
+}  // namespace
+
+Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, bool starts_from_V) {
   Entry entry;
   entry.fields = "nu, H, V, z";
   entry.variant = {
@@ -64,15 +71,17 @@ Entry willmore_entry(const WillmoreLaw& law) {
       {Key::not_negative, "relaxation", 0,
        "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau"},
       reinitialise_key()};
-  entry.run = [law](const Run& run) {
-    WillmoreStart start = willmore_start(run, law);
-    WillmoreFlow flow(run.space, willmore_variant(run.config.variant, law), start.theta, limits_of(run));
+  entry.run = [problem](const Run& run) {
+    const WillmoreProblem chosen = problem(run);
+    WillmoreStart start = willmore_start(run, chosen);
+    WillmoreFlow flow(run.space, willmore_variant(run.config.variant, chosen), start.theta, limits_of(run));
     flow.reinitialise(start.state);
     run_flow(flow, run, start.state);
   };
   entry.check = check_theta;
   entry.time_power = 4;
-  entry.starts = {{"nu", "H"}, {"nu", "H", "V", "z"}};
+  entry.starts = {{"nu", "H"}};
+  if (starts_from_V) entry.starts.push_back({"nu", "H", "V", "z"});
   entry.evolves_curvature = entry.records_kappa_energy = true;
   entry.curvature_cure =
       "try \"variant\": {\"relaxation\": ..} or {\"reinitialise\": 0.05}, or " + resolving_mesh;
@@ -82,11 +91,10 @@ Entry willmore_entry(const WillmoreLaw& law) {
   return entry;
 }
 
-}  // namespace
-
 std::vector<Entry> willmore_entries() {
-  Entry willmore = willmore_entry(willmore_law()),
-        surface_diffusion = willmore_entry(surface_diffusion_law());
+  Entry willmore = willmore_entry([](const Run&) { return WillmoreProblem{willmore_law()}; }),
+        surface_diffusion =
+            willmore_entry([](const Run&) { return WillmoreProblem{surface_diffusion_law()}; });
   willmore.flow = "willmore";
   willmore.energy = "willmore_energy";
   willmore.help = "Willmore flow by kll21 (3.4)-(3.5): V = Delta H + Q, which decreases 1/2 int H²";

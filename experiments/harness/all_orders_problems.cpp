@@ -14,6 +14,7 @@
 #include "solver/error.hpp"
 #include "solver/flows/cahn_hilliard.hpp"
 #include "solver/flows/dziuk_flow.hpp"
+#include "solver/flows/helfrich_law.hpp"
 #include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_flow.hpp"
 #include "solver/mesh/generate.hpp"
@@ -167,26 +168,36 @@ struct CahnHilliardOnEllipsoid {
   }
 };
 
-WillmoreFlow::Variant without_projections() {
+/// Without projections. Helfrich flow has spontaneous curvature, and keeps area and volume.
+WillmoreFlow::Variant willmore_variant(bool is_helfrich, const SurfaceSpace& space, const Field& x) {
   WillmoreFlow::Variant variant;
   variant.projection = WillmoreFlow::Variant::none;
+  if (!is_helfrich) return variant;
+  variant.law = helfrich_law(1);
+  variant.prescribed = {constant_target(space.area(x)), constant_target(space.volume(x))};
   return variant;
 }
 
-/// The Clifford torus, which is stationary, with theta.
+/// The Clifford torus, which is stationary, with theta. It is stationary under Helfrich flow, too: with |A|²
+/// = H² - 2 K what H_0 adds to Q is 2 H_0 K - H_0² H/2, and K = H/r - 1/r² on a torus of minor radius r; so
+/// lambda_A = 2 H_0/r - H_0²/2 and lambda_V = -2 H_0/r².
+template <bool is_helfrich>
 struct WillmoreOnTorus {
   using Flow = WillmoreFlow;
   static constexpr double major = 1;
   const double minor = std::sqrt(0.5);
   ExactEvolution exact = stationary_torus(major, minor);
   InitialSurface on;
+  WillmoreFlow::Variant variant;
   WillmoreStart start;
 
   /// h: the edges at the outer equator.
   WillmoreOnTorus(int degree, double h, double)
       : on(torus(major, minor), isothermal_torus_grid(major, minor, cells(h), cells(h)), degree),
-        start(willmore_start_on(on.space, exact.surface(0), on.mesh.nodes, willmore_law(), true)) {}
-  Flow flow() const { return {on.space, without_projections(), start.theta}; }
+        variant(willmore_variant(is_helfrich, on.space, on.mesh.nodes)),
+        start(willmore_start_on(on.space, exact.surface(0), on.mesh.nodes, variant.law, true,
+                                variant.prescribed)) {}
+  Flow flow() const { return {on.space, variant, start.theta}; }
   Flow::State state(double t) const {
     Flow::State state = start.state;
     state.t = t;
@@ -200,20 +211,23 @@ struct WillmoreOnTorus {
   }
 };
 
-/// An ellipsoid that becomes round.
+/// An ellipsoid that becomes round, or becomes a vesicle.
+template <bool is_helfrich>
 struct WillmoreOnEllipsoid {
   using Flow = WillmoreFlow;
   const Surface surface = ellipsoid(2, 2, 1.6);
   ExactEvolution exact;
   InitialSurface on;
+  WillmoreFlow::Variant variant;
   WillmoreStart start;
 
   WillmoreOnEllipsoid(int degree, double h, double)
       : on(surface, generate_mesh(surface, h), degree),
-        start(willmore_start_on(on.space, surface, on.mesh.nodes, willmore_law(), false)) {
+        variant(willmore_variant(is_helfrich, on.space, on.mesh.nodes)),
+        start(willmore_start_on(on.space, surface, on.mesh.nodes, variant.law, false, variant.prescribed)) {
     exact.quantities = {{"x", 3}, {"nu", 3}, {"H", 1}, {"w", 4}};
   }
-  Flow flow() const { return {on.space, without_projections()}; }
+  Flow flow() const { return {on.space, variant}; }
   const Flow::State& state(double) const { return start.state; }
 };
 
@@ -376,6 +390,10 @@ const std::vector<OrdersOfFlow>& orders_of_flows() {
        {0.02, 0.01}, {0.45, 0.6, 0.75, 0.85}, {3, 3, 3, 3, 3},
        {0.5, 0.1}, 0.1, {0.9, 1.25, 1.28, 1.28}, {4, 3, 4, 4, 5},
        170, 1.7e-6},
+      {"helfrich", "Clifford torus; ellipsoid", {"x", "nu", "H"},
+       {0.02, 0.01}, {0.45, 0.6, 0.75, 0.85}, {3, 3, 3, 3, 3},
+       {0.5, 0.1}, 0.1, {0.9, 1.25, 1.28, 1.28}, {4, 3, 4, 4, 5},
+       170, 4.5e-6},
       {"cahn_hilliard", "evolving ellipsoid", {"u", "w"},
        {0.2, 0.02}, {0.19, 0.38, 0.57, 0.75}, {5, 4, 3, 3, 2},
        {1, 0.2}, 0.4, {0.5, 0.8, 1.0, 1.0}, {5, 3, 3, 3, 4},
@@ -396,7 +414,8 @@ Row run_all_orders(const OrderRun& run, Row row) {
       {"dziuk", run_problem<DziukOnTorus>},
       {"generalised_mean_curvature", run_problem<PowerLawOnSphere, PowerLawOnEllipsoid>},
       {"coupled_diffusion", run_problem<CoupledOnSphere>},
-      {"willmore", run_problem<WillmoreOnTorus, WillmoreOnEllipsoid>},
+      {"willmore", run_problem<WillmoreOnTorus<false>, WillmoreOnEllipsoid<false>>},
+      {"helfrich", run_problem<WillmoreOnTorus<true>, WillmoreOnEllipsoid<true>>},
       {"cahn_hilliard", run_problem<CahnHilliardOnEllipsoid>}};
   const auto found = runs.find(run.flow.flow);
   if (found == runs.end()) throw std::logic_error("there is no problem for the flow " + run.flow.flow);

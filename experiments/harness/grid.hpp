@@ -11,6 +11,7 @@
 
 #include "experiments/harness/choice.hpp"
 #include "experiments/harness/experiment.hpp"
+#include "experiments/harness/stop_signal.hpp"
 #include "solver/analysis/run_recorder.hpp"
 #include "solver/mesh/mesh.hpp"
 #include "solver/time/integrate.hpp"
@@ -62,9 +63,9 @@ double checkpoint_seconds();
 /// written. None without folder.
 std::optional<Checkpoint> checkpoint_in(const std::string& folder, const std::string& cell);
 
-/// Integrates a flow, with a checkpoint in the folder of the run, to its end or its singularity: observers as
-/// for integrate, of which one records. Fills in status, steps, seconds, series and snapshots; of adaptive
-/// steps also the value "rejected_steps".
+/// Integrates a flow, with a checkpoint in the folder of the run, to its end, its singularity, or the step
+/// after which an observer ends it: observers as for integrate, of which one records. Fills in status, steps,
+/// seconds, series and snapshots; of adaptive steps also the value "rejected_steps".
 template <class Flow, class Steps, class... Observers>
 void run_recorded(Flow& flow, const Steps& steps, const StartingValues<typename Flow::State>& start,
                   const std::string& folder, RunRecorder& recorder, Row& row, Observers&&... observers);
@@ -78,9 +79,14 @@ void run_recorded(Flow& flow, const Steps& steps, const StartingValues<typename 
   std::optional<Checkpoint> checkpoint = checkpoint_in(folder, row.cell);
   if (checkpoint) attach(*checkpoint, recorder);
   const auto to_the_end = [&] {
-    const StepCount done = integrate(flow, steps, start, checkpoint ? &*checkpoint : nullptr, observers...);
-    row.steps = done.steps;
-    if (std::is_same_v<Steps, AdaptiveSteps>) row.values["rejected_steps"] = done.rejected;
+    try {
+      const StepCount done = integrate(flow, steps, start, checkpoint ? &*checkpoint : nullptr, observers...);
+      row.steps = done.steps;
+      if (std::is_same_v<Steps, AdaptiveSteps>) row.values["rejected_steps"] = done.rejected;
+    } catch (const StoppedError&) {
+      if (stop_signal() != 0) throw;
+      row.steps = recorder.newest().step;
+    }
   };
   row.status = run_to_end(to_the_end, recorder);
   if (checkpoint) row.seconds = checkpoint->seconds_before();

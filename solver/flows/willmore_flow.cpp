@@ -14,16 +14,31 @@ namespace {
 /// The right-hand sides of (3.5): f(x, u) (+ F(x, u) w) in columns 0-3, g(x, u) in columns 4-7; inputs u, w.
 struct WillmoreLoads {
   const WillmoreLaw& law;
+  double t, lambda_A, lambda_V;
   bool with_F;
   double relaxation;
 
   void operator()(const PointData<8>& p, Integrand<8, 4>& load) const {
     load = {};
-    const WillmorePoint at = willmore_point(p, law);
+    WillmorePoint at = willmore_point(p, law, t);
+    at.Q -= lambda_A * at.H + lambda_V;
     add_f(at, load.value, load.flux);
     add_g(at, load.value + 4);
     if (with_F) add_F(at, p.u + 4, load.value);
     if (relaxation > 0) add_relaxation(at, relaxation, p.normal, load.value, load.flux);
+  }
+};
+
+/// Their derivatives with respect to a multiplier: those of the rows nu in columns 0-2, V in column 3.
+struct MultiplierLoads {
+  Multipliers::Quantity quantity;
+
+  void operator()(const PointData<8>& p, Integrand<4, 3>& load) const {
+    load = {};
+    const WillmorePoint at = willmore_point(p);
+    const Pack Q = multiplied_by(quantity, at);
+    add_Q(at, Q, load.value, load.flux);
+    load.value[3] = Q;
   }
 };
 
@@ -42,12 +57,12 @@ void project(Fields&& u, Fields&& w) {
   }
 }
 
-/// A u - g(x, u), the left-hand side of (3.5b) without M w.
-Field constraint(const SurfaceSpace& space, const SymmetricMatrix& A, const Field& x, const Field& u,
-                 const WillmoreLaw& law) {
-  const auto g = [&law](const PointData<4>& p, Integrand<4, 0>& load) {
+/// A u - g(x, u), the left-hand side of (3.5b) without M w; g without multipliers.
+Field constraint(const SurfaceSpace& space, const SymmetricMatrix& A, double t, const Field& x,
+                 const Field& u, const WillmoreLaw& law) {
+  const auto g = [&law, t](const PointData<4>& p, Integrand<4, 0>& load) {
     for (Pack& value : load.value) value = Pack{};
-    add_g(willmore_point(p, law), load.value);
+    add_g(willmore_point(p, law, t), load.value);
   };
   Field load;
   space.assemble_load<4, 4, 0>(x, u, g, load);
@@ -111,7 +126,8 @@ WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field the
       M_(space.matrix()),
       A_(space.matrix()),
       lagged_(space),
-      reinitialisation_(space, variant.reinitialise, {space, variant.law}) {
+      multipliers_(space, variant.prescribed),
+      reinitialisation_(space, variant.reinitialise, {space, multipliers_, variant.law}) {
   if (!(variant.relaxation >= 0))
     throw InputError(format("relaxation: found %g, expected a number >= 0", variant.relaxation));
   if (variant.F == Variant::implicit) implicit_ = std::make_unique<ImplicitCoupling>();
@@ -130,101 +146,187 @@ void WillmoreFlow::resume(const nlohmann::json& saved) {
   esfem::resume(tilde_, saved, space_.dofs());
 }
 
-void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
-  const double tau = step.tau, delta_0 = step.delta[0];
-
+void WillmoreFlow::extrapolate(const BdfStep<State>& step) {
   step.extrapolate(&State::x, x_tilde_);
-  step.extrapolate(&State::u, tilde_.u);
-  step.extrapolate(&State::w, tilde_.w);
-  u_w_tilde_.resize(x_tilde_.rows(), 8);
-  u_w_tilde_ << tilde_.u, tilde_.w;
+  step.extrapolate(&State::u, u_tilde_);
+  step.extrapolate(&State::w, w_tilde_);
+  step.extrapolate(&State::lambda, lambda_tilde_);
+  const Eigen::Index n = x_tilde_.rows(), columns = 4 * (1 + multipliers_.unknowns().size());
+  tilde_.u.setZero(n, columns);
+  tilde_.w.setZero(n, columns);
+  tilde_.u.leftCols(4) = u_tilde_;
+  tilde_.w.leftCols(4) = w_tilde_;
+  u_w_tilde_.resize(n, 8);
+  u_w_tilde_ << u_tilde_, w_tilde_;
   if (variant_.projection == Variant::in_coefficients)
     project(u_w_tilde_.leftCols(4), u_w_tilde_.rightCols(4));
+}
 
-  // f(x~, u~) (+ F(x~, u~) w~) and g(x~, u~)
-  assemble_regular(space_, x_tilde_, M_, A_);
-  const WillmoreLoads loads{variant_.law, variant_.F == Variant::extrapolated, variant_.relaxation};
+/// f(x~, u~) (+ F(x~, u~) w~) and g(x~, u~) with lambda~, and their derivatives with respect to multipliers.
+void WillmoreFlow::assemble_loads(const BdfStep<State>& step) {
+  const std::size_t unknowns = multipliers_.unknowns().size();
+  const WillmoreLoads loads{variant_.law,
+                            step.t,
+                            lambda_tilde_(0, Multipliers::area),
+                            lambda_tilde_(0, Multipliers::volume),
+                            variant_.F == Variant::extrapolated,
+                            variant_.relaxation};
   space_.assemble_load<8, 8, 4>(x_tilde_, u_w_tilde_, loads, loads_);
 
   // (3.5a): delta_0/tau M u - A w = F w + f - M 1/tau sum_{j>=1} delta_j u^{n-j};  (3.7): A u + M w = g +
   // theta
-  step.known_sum(&State::u, sum_);
-  M_.multiply(sum_, M_sum_);
-  next.u = loads_.leftCols(4) - M_sum_ / tau;
-  next.w = loads_.rightCols(4);
-  if (theta_.size() > 0) next.w += theta_;
-  if (implicit_)
-    implicit_->solve(space_, x_tilde_, u_w_tilde_, lagged_.factorise(delta_0 / tau, x_tilde_, M_, A_), next.u,
-                     next.w);
-  else
-    lagged_.solve(delta_0 / tau, x_tilde_, M_, A_, tilde_, next.u, next.w);
+  u_.setZero(tilde_.u.rows(), tilde_.u.cols());
+  w_.setZero(tilde_.u.rows(), tilde_.u.cols());
+  step.known_sum(&State::u, u_sum_);
+  M_.multiply(u_sum_, M_sum_);
+  u_.leftCols(4) = loads_.leftCols(4) - M_sum_ / step.tau;
+  w_.leftCols(4) = loads_.rightCols(4);
+  if (theta_.size() > 0) w_.leftCols(4) += theta_;
+  for (std::size_t i = 0; i < unknowns; ++i) {
+    const MultiplierLoads of_multiplier{multipliers_.unknowns()[i]};
+    space_.assemble_load<8, 4, 3>(x_tilde_, u_w_tilde_, of_multiplier, loads_);
+    u_.middleCols(4 * (1 + i) + 1, 3) = loads_.leftCols(3);
+    w_.col(4 * (1 + i)) = loads_.col(3);
+  }
+}
+
+void WillmoreFlow::solve_systems(const BdfStep<State>& step) {
+  const double alpha = step.delta[0] / step.tau;
+  if (!implicit_) return lagged_.solve(alpha, x_tilde_, M_, A_, tilde_, u_, w_);
+  BlockSolver& block = lagged_.factorise(alpha, x_tilde_, M_, A_);
+  for (int i = 0; i < u_.cols() / 4; ++i) {
+    Field u = u_.middleCols(4 * i, 4), w = w_.middleCols(4 * i, 4);
+    if (i > 0) u_w_tilde_.rightCols(4).setZero();
+    implicit_->solve(space_, x_tilde_, u_w_tilde_, block, u, w);
+    u_.middleCols(4 * i, 4) = u;
+    w_.middleCols(4 * i, 4) = w;
+  }
+}
+
+/// next.u, next.w, next.v and next.x for the multipliers next.lambda.
+void WillmoreFlow::advance(const BdfStep<State>& step, State& next) const {
+  next.u = u_.leftCols(4);
+  next.w = w_.leftCols(4);
+  for (std::size_t i = 0; i < multipliers_.unknowns().size(); ++i) {
+    const Multipliers::Quantity quantity = multipliers_.unknowns()[i];
+    const double mu = next.lambda(0, quantity) - lambda_tilde_(0, quantity);
+    next.u += mu * u_.middleCols(4 * (1 + i), 4);
+    next.w += mu * w_.middleCols(4 * (1 + i), 4);
+  }
   if (variant_.projection == Variant::after_steps) project(next.u, next.w);
 
   // (3.4): v = V nu, delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
   next.v = interpolated_velocity(next.u, next.w);
-  step.known_sum(&State::x, sum_);
-  next.x = (tau * next.v - sum_) / delta_0;
+  next.x = (step.tau * next.v - x_sum_) / step.delta[0];
+}
+
+/// The derivatives of x with respect to the multipliers: tau/delta_0 (V_i nu + V nu_i). The projection of nu
+/// is left out, which is a matter of nu_i = O(tau).
+void WillmoreFlow::rates_of_x(const BdfStep<State>& step, const State& next) {
+  for (std::size_t i = 0; i < multipliers_.unknowns().size(); ++i)
+    x_rates_[i] = step.tau / step.delta[0] *
+                  (w_.col(4 * (1 + i)).asDiagonal() * next.u.rightCols(3) +
+                   next.w.col(0).asDiagonal() * u_.middleCols(4 * (1 + i) + 1, 3));
+}
+
+void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
+  extrapolate(step);
+  assemble_regular(space_, x_tilde_, M_, A_);
+  assemble_loads(step);
+  solve_systems(step);
+
+  step.known_sum(&State::x, x_sum_);
+  next.lambda = lambda_tilde_;
+  advance(step, next);
+  if (!multipliers_.unknowns().empty()) {
+    rates_of_x(step, next);
+    for (int i = 0; multipliers_.correct(step.t, next.x, x_rates_, next.lambda); ++i) {
+      if (i == Multipliers::most_iterations)
+        throw NumericsError("Newton's method finds no multipliers for the prescribed area or volume");
+      advance(step, next);
+      rates_of_x(step, next);
+    }
+  }
   require_regular(space_, next.x, next.u.col(0), limits_);
   require_normal(next.x, next.u.rightCols(3), limits_);
 }
 
 namespace {
 
-/// The state with given nodes and u = (H, nu) and, where it is given, w; otherwise w from (3.5b).
-WillmoreStart start_from(const SurfaceSpace& space, const Field& x, Field u, Field exact_w,
-                         const WillmoreLaw& law) {
+/// The state with given nodes and u = (H, nu) and, where it is given, w without multipliers; otherwise w from
+/// (3.5b).
+WillmoreStart start_from(const SurfaceSpace& space, double t, const Field& x, Field u, Field exact_w,
+                         const WillmoreLaw& law, const Multipliers& multipliers) {
   SymmetricMatrix M = space.matrix(), A = space.matrix();
   space.assemble(x, M, A);
-  const Field rest = constraint(space, A, x, u, law);
+  const Field rest = constraint(space, A, t, x, u, law);
   WillmoreStart start;
   if (exact_w.size() > 0) {
+    // The multipliers' parts of M w and of g are the same.
     start.theta = M * exact_w + rest;
     start.state.w = std::move(exact_w);
   } else {
     start.state.w = l2_project(M, -rest);
   }
+  start.state.t = t;
+  start.state.lambda = multipliers.at_start(M, u.col(0), start.state.w.col(0));
+  const double lambda_A = start.state.lambda(0, Multipliers::area),
+               lambda_V = start.state.lambda(0, Multipliers::volume);
+  start.state.w.col(0).array() -= lambda_A * u.col(0).array() + lambda_V;
   start.state.x = x;
   start.state.v = interpolated_velocity(u, start.state.w);
   start.state.u = std::move(u);
   return start;
 }
 
+/// The point of kll21 (3.5) with the shape of a surface in a point: what a law sees.
+WillmorePoint exact_point(const Vec3& x, const Surface::Shape& shape) {
+  WillmorePoint at = {};
+  for (int i = 0; i < 3; ++i) {
+    at.x[i] = pack(x[i]);
+    at.nu[i] = pack(shape.normal[i]);
+  }
+  at.H = pack(shape.weingarten.trace());
+  at.A_squared = pack(shape.weingarten.squaredNorm());
+  return at;
+}
+
 }  // namespace
 
 void WillmoreFlow::Fields::complete(State& state) const {
-  const double t = state.t;
-  state = start_from(space, state.x, state.u, {}, law).state;
-  state.t = t;
+  state = start_from(space, state.t, state.x, state.u, {}, law, multipliers).state;
 }
 
 WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x,
-                                const WillmoreLaw& law, bool with_theta) {
+                                const WillmoreLaw& law, bool with_theta, const AreaAndVolume& prescribed) {
   Field u(x.rows(), 4), w;
   if (with_theta) w.resize(x.rows(), 4);
   for (int j = 0; j < x.rows(); ++j) {
     const Vec3 y = x.row(j);
     const Surface::Shape shape = surface.shape_at(y);
-    const double H = shape.weingarten.trace(), A_squared = shape.weingarten.squaredNorm();
-    u.row(j) << H, shape.normal.transpose();
+    u.row(j) << shape.weingarten.trace(), shape.normal.transpose();
     if (!with_theta) continue;
-    const double Q = Q_of(law, H, A_squared);
-    w.row(j) << surface.mean_curvature_laplacian(y) + Q, surface.mean_curvature_gradient(y).transpose();
+    Pack Q;
+    law(exact_point(y, shape), Q);
+    w.row(j) << surface.mean_curvature_laplacian(y) + Q[0], surface.mean_curvature_gradient(y).transpose();
   }
-  return start_from(space, x, std::move(u), std::move(w), law);
+  return start_from(space, 0, x, std::move(u), std::move(w), law, Multipliers(space, prescribed));
 }
 
 WillmoreStart willmore_start_from(const SurfaceSpace& space, const Field& x, Field u, Field w,
-                                  const WillmoreLaw& law) {
-  WillmoreStart start = start_from(space, x, std::move(u), std::move(w), law);
+                                  const WillmoreLaw& law, const AreaAndVolume& prescribed) {
+  WillmoreStart start =
+      start_from(space, 0, x, std::move(u), std::move(w), law, Multipliers(space, prescribed));
   start.theta = {};
   return start;
 }
 
-WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, const WillmoreLaw& law) {
+WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, const WillmoreLaw& law,
+                                      const AreaAndVolume& prescribed) {
   const MeanCurvatureFlow::State curvature = discrete_mean_curvature_state(space, x);
   Field u(x.rows(), 4);
   u << curvature.u.col(3), curvature.u.leftCols(3);
-  return start_from(space, x, std::move(u), {}, law);
+  return start_from(space, 0, x, std::move(u), {}, law, Multipliers(space, prescribed));
 }
 
 NodalFields nodal_fields(const WillmoreFlow::State& state) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/area_and_volume.hpp"
 #include "solver/flows/lagged_block_solver.hpp"
 #include "solver/flows/willmore_law.hpp"
 #include "solver/geometry/regularity.hpp"
@@ -19,10 +20,16 @@ namespace esfem {
 ///
 /// Unknown nodal vectors: positions x, velocity v = V nu, u = (H, nu) and w = (V, z), where V is the normal
 /// velocity, Delta H + Q, and z = Delta nu + |A|² nu, which is grad H on a smooth surface.
+///
+/// Where area or volume are prescribed Q has the part -lambda_A H - lambda_V. It is linear in the multipliers
+/// lambda, and so are u and w of a step: lambda = lambda~ + mu, lambda~ extrapolated, and u = u_0 + sum mu_i
+/// u_i, with the right-hand sides of u_0 and of each u_i solved together. Then the positions depend on mu
+/// alone, and Newton's method finds the mu with which area and volume are the prescribed ones.
 class WillmoreFlow {
  public:
   struct Variant {
     WillmoreLaw law = willmore_law();
+    AreaAndVolume prescribed = {};
     /// How F(x, u) w of (3.5a) is taken: extrapolated, F(x~, u~) w~; implicit, F(x~, u~) w^n, which on the
     /// Clifford torus is unstable for step sizes from 0.02 to 0.1.
     enum Coupling { extrapolated, implicit } F = extrapolated;
@@ -44,12 +51,13 @@ class WillmoreFlow {
 
   struct State {
     double t = 0;
-    Field x;  ///< N x 3
-    Field v;  ///< N x 3
-    Field u;  ///< N x 4: H, nu_1, nu_2, nu_3
-    Field w;  ///< N x 4: V, z_1, z_2, z_3
+    Field x;                           ///< N x 3
+    Field v;                           ///< N x 3
+    Field u;                           ///< N x 4: H, nu_1, nu_2, nu_3
+    Field w;                           ///< N x 4: V, z_1, z_2, z_3
+    Field lambda = Field::Zero(1, 2);  ///< multipliers of area and volume; 0 for what is not prescribed
     static constexpr NamedField<State> fields[] = {
-        {"x", &State::x}, {"v", &State::v}, {"u", &State::u}, {"w", &State::w}};
+        {"x", &State::x}, {"v", &State::v}, {"u", &State::u}, {"w", &State::w}, {"lambda", &State::lambda}};
   };
 
   /// The space gives elements, degree and quadrature; it must outlive the flow. theta (N x 4): the correction
@@ -78,9 +86,16 @@ class WillmoreFlow {
 
  private:
   struct ImplicitCoupling;
+  void extrapolate(const BdfStep<State>& step);
+  void assemble_loads(const BdfStep<State>& step);
+  void solve_systems(const BdfStep<State>& step);
+  void advance(const BdfStep<State>& step, State& next) const;
+  void rates_of_x(const BdfStep<State>& step, const State& next);
+
   /// How Reinitialisation sees u; w comes from (3.5b).
   struct Fields {
     const SurfaceSpace& space;
+    const Multipliers& multipliers;
     WillmoreLaw law;
     static auto nu(State& state) { return state.u.rightCols(3); }
     static auto H(State& state) { return state.u.col(0); }
@@ -94,12 +109,16 @@ class WillmoreFlow {
   SymmetricMatrix M_, A_;
   LaggedBlockSolver lagged_;
   std::unique_ptr<ImplicitCoupling> implicit_;
+  Multipliers multipliers_;
   Reinitialisation<State, Fields> reinitialisation_;
-  LaggedBlockSolver::Guess tilde_;  ///< u~ and w~
-  Field x_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
+  LaggedBlockSolver::Guess tilde_;  ///< u~ and w~, and 0 for u_i and w_i
+  Field x_tilde_, u_tilde_, w_tilde_, lambda_tilde_, u_w_tilde_, loads_, x_sum_, u_sum_, M_sum_;
+  Field u_, w_;  ///< u_0, u_1, .. and w_0, w_1, .., side by side
+  std::array<Field, 2> x_rates_;
 };
 
-/// Start of a run.
+/// Start of a run. V has the multipliers with which it leaves the prescribed ones of area and volume as they
+/// are; they must be at rest at t = 0.
 struct WillmoreStart {
   WillmoreFlow::State state;  ///< t = 0
   Field theta;                ///< N x 4: what WillmoreFlow takes; empty without the correction
@@ -108,16 +127,18 @@ struct WillmoreStart {
 /// Starting values of a surface that its nodes x lie on: H, nu and, with_theta, V and z of the surface
 /// (derivatives by autodiff) with the theta (3.6) that belongs to them; otherwise V and z from (3.5b).
 WillmoreStart willmore_start_on(const SurfaceSpace& space, const Surface& surface, const Field& x,
-                                const WillmoreLaw& law, bool with_theta);
+                                const WillmoreLaw& law, bool with_theta,
+                                const AreaAndVolume& prescribed = {});
 
 /// Starting values with given nodes x, u = (H, nu) and w = (V, z); without w (no rows) it is that of (3.5b).
 /// theta is empty.
 WillmoreStart willmore_start_from(const SurfaceSpace& space, const Field& x, Field u, Field w,
-                                  const WillmoreLaw& law);
+                                  const WillmoreLaw& law, const AreaAndVolume& prescribed = {});
 
 /// Starting values of a surface of which only the nodes x are known: nu and H as those of mean curvature flow
 /// (discrete_mean_curvature_state), V and z from (3.5b).
-WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, const WillmoreLaw& law);
+WillmoreStart discrete_willmore_start(const SurfaceSpace& space, const Field& x, const WillmoreLaw& law,
+                                      const AreaAndVolume& prescribed = {});
 
 /// The flow's own nodal fields beside x: v, nu, H, V, z.
 NodalFields nodal_fields(const WillmoreFlow::State& state);

@@ -6,22 +6,16 @@
 
 namespace esfem {
 
-/// The terms of kll21 (3.5) at a quadrature point. They see u = (H, nu) as the first four inputs.
-struct WillmorePoint {
-  Pack H, nu[3], grad_H[3];
-  Pack A[3][3];      ///< A_h, the symmetric part of grad nu_h
-  Pack A_squared;    ///< |A_h|², Frobenius
-  Pack A_grad_H[3];  ///< A_h grad H_h
-  Pack Q;            ///< of the law
-};
-
+/// The terms of kll21 (3.5) at a quadrature point at time t, with u = (H, nu) as the first four inputs.
 /// Without Q, which is 0: what F needs.
 template <int inputs>
-WillmorePoint willmore_point(const PointData<inputs>& p) {
+WillmorePoint willmore_point(const PointData<inputs>& p, double t = 0) {
   WillmorePoint at;
+  at.t = t;
   at.H = p.u[0];
   at.A_squared = Pack{};
   for (int i = 0; i < 3; ++i) {
+    at.x[i] = p.x[i];
     at.nu[i] = p.u[1 + i];
     at.grad_H[i] = p.grad[0][i];
     for (int l = 0; l < 3; ++l) {
@@ -35,9 +29,9 @@ WillmorePoint willmore_point(const PointData<inputs>& p) {
 }
 
 template <int inputs>
-WillmorePoint willmore_point(const PointData<inputs>& p, const WillmoreLaw& law) {
-  WillmorePoint at = willmore_point(p);
-  law(at.H, at.A_squared, at.Q);
+WillmorePoint willmore_point(const PointData<inputs>& p, const WillmoreLaw& law, double t = 0) {
+  WillmorePoint at = willmore_point(p, t);
+  law(at, at.Q);
   return at;
 }
 
@@ -50,15 +44,24 @@ inline void add_F(const WillmorePoint& at, const Pack* w, Pack* value) {
   for (int i = 0; i < 3; ++i) value[1 + i] += at.H * A_z[i] - dot(at.A[i], A_z);
 }
 
+/// Adds Q's part of f_2 of (3.5a) to values and fluxes of the rows nu: -Q H nu, tested with phi, and Q e_l,
+/// tested with grad phi. It is -grad Q, integrated by parts.
+inline void add_Q(const WillmorePoint& at, const Pack& Q, Pack* value, Pack (*flux)[3]) {
+  for (int l = 0; l < 3; ++l) {
+    value[l] -= Q * at.H * at.nu[l];
+    flux[l][l] += Q;
+  }
+}
+
 /// Adds f_2 of (3.5a) to values and fluxes of the rows (H, nu): |grad H|² nu + A² grad H - Q H nu, tested
 /// with phi, and 2 (A grad H) nu_l + Q e_l, tested with grad phi.
 inline void add_f(const WillmorePoint& at, Pack* value, Pack (*flux)[3]) {
-  const Pack along_nu = dot(at.grad_H, at.grad_H) - at.Q * at.H;
+  const Pack along_nu = dot(at.grad_H, at.grad_H);
   for (int l = 0; l < 3; ++l) {
     value[1 + l] += along_nu * at.nu[l] + dot(at.A[l], at.A_grad_H);
     for (int i = 0; i < 3; ++i) flux[1 + l][i] += 2.0 * at.A_grad_H[i] * at.nu[l];
-    flux[1 + l][l] += at.Q;
   }
+  add_Q(at, at.Q, value + 1, flux + 1);
 }
 
 /// Adds g = (g_1, g_2) of (3.5b) to the values of the rows (V, z): Q and |A|² nu.

@@ -43,8 +43,9 @@ TEST(SphereModes, DecayAtTheRate24UnderWillmoreFlowAndSurfaceDiffusion) {
   EXPECT_NEAR(willmore_rate(willmore_law()), 24, 0.15);
   EXPECT_NEAR(willmore_rate(surface_diffusion_law()), 24, 0.15);
   // The rate sees a law in which |A|² is missing: Q = -H³/2.
-  EXPECT_GT(std::abs(willmore_rate([](const Pack& H, const Pack&, Pack& Q) { Q = -0.5 * H * H * H; }) - 24),
-            5);
+  EXPECT_GT(
+      std::abs(willmore_rate([](const WillmorePoint& at, Pack& Q) { Q = -0.5 * at.H * at.H * at.H; }) - 24),
+      5);
 }
 
 TEST(SphereModes, DecayLikeOneMinusFourTUnderMeanCurvatureFlow) {

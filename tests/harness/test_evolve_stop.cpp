@@ -72,6 +72,7 @@ TEST_F(EvolveStop, IsPossibleForEveryFlow) {
       {{"flow", "generalised_mean_curvature"}},
       {{"flow", "coupled_diffusion"}},
       {{"flow", "surface_diffusion"}},
+      {{"flow", "helfrich"}, {"parameters", {{"constraints", {"area"}}}}},
       {{"flow", "dziuk_willmore"}, {"bdf", 1}, {"tau", 1e-5}},
       {{"flow", "bgn_willmore"}, {"bdf", 1}, {"tau", 1e-5}},
       {{"flow", "coupled_diffusion"}, {"problem", "tumour_growth"}, {"tau", 1e-3}},

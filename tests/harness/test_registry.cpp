@@ -73,15 +73,16 @@ TEST(Registry, EveryKeyIsReadAndCheckedWhereItBelongs) {
       bad[object] = {{"no_such_key", takes_any_number ? json("text") : json(1)}};
       EXPECT_NE(refusal(bad), "") << bad;
       for (const Key& key : *keys) {
-        bad[object] = {{key.name, json::array()}};
+        bad[object] = {{key.name, key.kind == Key::words_of ? json(1) : json::array()}};
         EXPECT_THAT(refusal(bad), HasSubstr(key.name)) << bad;
         json good = flow;
-        good[object] = {{key.name, key.kind == Key::truth ? json(true)
-                                   : !key.words.empty()   ? json(key.words.back())
-                                                          : json(1)}};
+        good[object] = {{key.name, key.kind == Key::truth      ? json(true)
+                                   : key.kind == Key::words_of ? json(key.words)
+                                   : !key.words.empty()        ? json(key.words.back())
+                                                               : json(1)}};
         EXPECT_EQ(refusal(good), "") << good;
         if (!key.words.empty()) {
-          bad[object] = {{key.name, "no_such_word"}};
+          bad[object] = {{key.name, key.kind == Key::words_of ? json{"no_such_word"} : json("no_such_word")}};
           EXPECT_THAT(refusal(bad), AllOf(HasSubstr("expected one of"), HasSubstr(key.words.back()))) << bad;
           const bool names_truth = refusal(bad).find("false, true") != std::string::npos;
           EXPECT_EQ(names_truth, key.kind == Key::truth_or_word) << refusal(bad);
