@@ -62,7 +62,7 @@ Key tangential_key() {
   return word(
       "tangential", {"none", "minimal_deformation"},
       "motion along the surface: none, or that with the least int |grad v|² (Hu, Li 2022), which keeps "
-      "elements in shape; then \"velocity\" is of no effect");
+      "elements in shape");
 }
 
 std::string linear_elements(const EvolveConfig& config) {

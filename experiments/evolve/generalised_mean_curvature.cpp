@@ -46,9 +46,9 @@ std::vector<Entry> generalised_mean_curvature_entries() {
       "Binz, Kovács 2022: v = -V(H) nu, V = H^power, or -H^power for negative powers (-1: inverse mean "
       "curvature flow), H > 0";
   entry.fields = "nu, V";
-  entry.variant = {
-      word("velocity", {"ritz", "interpolation"}, "v_h: Ritz projection of -V_h nu_h, or its nodal values"),
-      tangential_key()};
+  entry.variant = {word("velocity", {"ritz", "interpolation"},
+                        "v_h: Ritz projection of -V_h nu_h, or its nodal values; without \"tangential\""),
+                   tangential_key()};
   entry.parameters = {{Key::number, "power", 2, "of H, not 0"}};
   entry.run = run_generalised_mean_curvature;
   entry.check = [](const EvolveConfig& config, const std::string&) {

@@ -47,12 +47,12 @@ std::vector<Entry> mean_curvature_entries() {
   entry.flow = "mean_curvature";
   entry.help = "mean curvature flow by kll19 (5.1): evolution equations for nu and H";
   entry.fields = "nu, H";
-  entry.variant = {
-      word("velocity", {"ritz", "interpolation"}, "v_h: Ritz projection of -H_h nu_h, or its nodal values"),
-      tangential_key(),
-      {Key::truth, "normalise", false, "nu_h to unit length in the nodes after each step"},
-      {Key::not_negative, "stabilise", 0, "alpha of kll19 §14, 1/time"},
-      reinitialise_key()};
+  entry.variant = {word("velocity", {"ritz", "interpolation"},
+                        "v_h: Ritz projection of -H_h nu_h, or its nodal values; without \"tangential\""),
+                   tangential_key(),
+                   {Key::truth, "normalise", false, "nu_h to unit length in the nodes after each step"},
+                   {Key::not_negative, "stabilise", 0, "alpha of kll19 §14, 1/time"},
+                   reinitialise_key()};
   entry.run = run_mean_curvature;
   entry.starts = {{"nu", "H"}};
   entry.evolves_curvature = entry.can_shrink_to_nothing = entry.is_mean_curvature_flow = true;

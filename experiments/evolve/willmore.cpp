@@ -21,6 +21,8 @@ Variant willmore_variant(const Settings& asked, const WillmoreLaw& law) {
   variant.projection = projection_of(asked);
   variant.relaxation = asked.number("relaxation");
   variant.reinitialise = asked.number_or("reinitialise", 0);
+  if (asked.is("tangential", "minimal_deformation"))
+    variant.tangential = MeanCurvatureFlow::Variant::minimal_deformation;
   return variant;
 }
 
@@ -63,6 +65,7 @@ Entry willmore_entry(const WillmoreLaw& law) {
       {Key::truth, "theta", nullptr, "the correction (3.7); default: true with a \"surface\", false without"},
       {Key::not_negative, "relaxation", 0,
        "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau"},
+      tangential_key(),
       reinitialise_key()};
   entry.run = [law](const Run& run) {
     WillmoreStart start = willmore_start(run, law);

@@ -115,6 +115,8 @@ WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field the
   if (!(variant.relaxation >= 0))
     throw InputError(format("relaxation: found %g, expected a number >= 0", variant.relaxation));
   if (variant.F == Variant::implicit) implicit_ = std::make_unique<ImplicitCoupling>();
+  if (variant.tangential == MeanCurvatureFlow::Variant::minimal_deformation)
+    deformation_ = std::make_unique<MinimalDeformation>(space);
 }
 
 WillmoreFlow::~WillmoreFlow() = default;
@@ -122,12 +124,28 @@ WillmoreFlow::~WillmoreFlow() = default;
 nlohmann::json WillmoreFlow::progress() const {
   nlohmann::json saved = lagged_.progress();
   saved.update(esfem::progress(tilde_));
+  if (deformation_) saved["deformation"] = deformation_->progress();
   return saved;
 }
 
 void WillmoreFlow::resume(const nlohmann::json& saved) {
   lagged_.resume(saved);
   esfem::resume(tilde_, saved, space_.dofs());
+  if (deformation_) deformation_->resume(saved.at("deformation"));
+}
+
+/// v of the normal speed V~, and its convective term, (v . grad) u~ tested with phi.
+void WillmoreFlow::move_along_surface(Field& v) {
+  nu_V_.resize(u_w_tilde_.rows(), 4);
+  nu_V_ << u_w_tilde_.middleCols(1, 3), -u_w_tilde_.col(4);
+  deformation_->velocity(x_tilde_, nu_V_, M_, A_, v);
+  u_v_.resize(v.rows(), 7);
+  u_v_ << u_w_tilde_.leftCols(4), v;
+  const auto convection = [](const PointData<7>& p, Integrand<4, 0>& load) {
+    for (int l = 0; l < 4; ++l)
+      load.value[l] = p.u[4] * p.grad[l][0] + p.u[5] * p.grad[l][1] + p.u[6] * p.grad[l][2];
+  };
+  space_.assemble_load<7, 4, 0>(x_tilde_, u_v_, convection, convection_);
 }
 
 void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
@@ -152,6 +170,10 @@ void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
   M_.multiply(sum_, M_sum_);
   next.u = loads_.leftCols(4) - M_sum_ / tau;
   next.w = loads_.rightCols(4);
+  if (deformation_) {
+    move_along_surface(next.v);
+    next.u += convection_;
+  }
   if (theta_.size() > 0) next.w += theta_;
   if (implicit_)
     implicit_->solve(space_, x_tilde_, u_w_tilde_, lagged_.factorise(delta_0 / tau, x_tilde_, M_, A_), next.u,
@@ -161,7 +183,7 @@ void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
   if (variant_.projection == Variant::after_steps) project(next.u, next.w);
 
   // (3.4): v = V nu, delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
-  next.v = interpolated_velocity(next.u, next.w);
+  if (!deformation_) next.v = interpolated_velocity(next.u, next.w);
   step.known_sum(&State::x, sum_);
   next.x = (tau * next.v - sum_) / delta_0;
   require_regular(space_, next.x, next.u.col(0), limits_);

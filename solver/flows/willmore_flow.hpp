@@ -5,6 +5,7 @@
 
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/lagged_block_solver.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_law.hpp"
 #include "solver/geometry/regularity.hpp"
 #include "solver/geometry/reinitialisation.hpp"
@@ -40,6 +41,11 @@ class WillmoreFlow {
     double relaxation = 0;
     /// Tolerance of nu and H, see Reinitialisation; 0: they are never taken from the surface.
     double reinitialise = 0;
+    /// minimal_deformation: v is the velocity of MinimalDeformation with the normal speed V~, and the
+    /// equation of u has a convective term: normal motion has M d°u = A w + .., and along v the derivative is
+    /// d•u = d°u + (v . grad) u. (3.5b) has no time derivative: V and z are those of the surface and u at
+    /// each time, however the nodes move.
+    MeanCurvatureFlow::Variant::Tangential tangential = MeanCurvatureFlow::Variant::none;
   };
 
   struct State {
@@ -78,6 +84,7 @@ class WillmoreFlow {
 
  private:
   struct ImplicitCoupling;
+  void move_along_surface(Field& v);
   /// How Reinitialisation sees u; w comes from (3.5b).
   struct Fields {
     const SurfaceSpace& space;
@@ -95,7 +102,9 @@ class WillmoreFlow {
   LaggedBlockSolver lagged_;
   std::unique_ptr<ImplicitCoupling> implicit_;
   Reinitialisation<State, Fields> reinitialisation_;
-  LaggedBlockSolver::Guess tilde_;  ///< u~ and w~
+  LaggedBlockSolver::Guess tilde_;                   ///< u~ and w~
+  std::unique_ptr<MinimalDeformation> deformation_;  ///< none without tangential motion
+  Field nu_V_, u_v_, convection_;
   Field x_tilde_, u_w_tilde_, loads_, sum_, M_sum_;
 };
 

@@ -6,6 +6,7 @@
 
 #include "solver/flows/generalised_mean_curvature_flow.hpp"
 #include "solver/flows/mean_curvature_loads.hpp"
+#include "solver/flows/willmore_flow.hpp"
 #include "solver/geometry/discrete_curvature.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/problems/exact_states.hpp"
@@ -209,6 +210,39 @@ TEST(MinimalDeformation, NormalsBelongToTheSurfaceOffTheSphereWithTheConvectiveT
     EXPECT_LT(right, 0.012) << power;
     // In the inverse flow the nodes hardly slide in this time.
     EXPECT_GT(without, (power > 0 ? 5 : 1.05) * right) << power;
+  }
+}
+
+TEST(MinimalDeformation, TheConvectiveTermOfWillmoreFlowIsThatOfTheSurface) {
+  // A tiny step with tangential motion less one without is tau (v . grad) u: A v of the normal, v . grad H.
+  const Surface surface = ellipsoid(1.3, 1, 0.8);
+  Mesh mesh = lagrange_mesh(generate_mesh(surface, 0.3), 2);
+  project_nodes(mesh, surface);
+  const SurfaceSpace space(mesh);
+  for (const WillmoreLaw& law : {willmore_law(), surface_diffusion_law()}) {
+    WillmoreFlow::Variant variant;
+    variant.law = law;
+    variant.projection = WillmoreFlow::Variant::none;
+    const WillmoreFlow::State start = willmore_start_on(space, surface, mesh.nodes, law, true).state;
+    const double tau = 1e-9;
+    const auto after_a_step = [&](auto tangential) {
+      variant.tangential = tangential;
+      WillmoreFlow flow(space, variant);
+      return last_state(flow, {1, tau, 1, {}}, {start});
+    };
+    const WillmoreFlow::State still = after_a_step(Variant::none),
+                              moved = after_a_step(Variant::minimal_deformation);
+    Field expected(mesh.nodes.rows(), 4);
+    for (int j = 0; j < expected.rows(); ++j) {
+      const Vec3 x = mesh.nodes.row(j), v = moved.v.row(j);
+      expected.row(j) << v.dot(surface.mean_curvature_gradient(x)),
+          (surface.shape_at(x).weingarten * v).transpose();
+    }
+    const double size = expected.norm(), difference = ((moved.u - still.u) / tau - expected).norm();
+    EXPECT_LT(difference, 0.1 * size);
+    EXPECT_NEAR((moved.v.cwiseProduct(start.u.rightCols(3)).rowwise().sum() - start.w.col(0)).norm(), 0,
+                0.1 * start.w.col(0).norm())
+        << "the normal velocity is V";
   }
 }
 
