@@ -58,6 +58,13 @@ Key reinitialise_key() {
           "such as 0.05"};
 }
 
+Key tangential_key() {
+  return word(
+      "tangential", {"none", "minimal_deformation"},
+      "motion along the surface: none, or that with the least int |grad v|² (Hu, Li 2022), which keeps "
+      "elements in shape");
+}
+
 std::string linear_elements(const EvolveConfig& config) {
   return config.mesh.degree > 1 ? " with \"degree\": 1" : "";
 }

@@ -42,5 +42,7 @@ std::string smaller_steps_or_even_elements(const EvolveConfig& config);
 
 /// "reinitialise" of flows that evolve nu and H.
 Key reinitialise_key();
+/// "tangential" of flows whose nodes can move along the surface, too.
+Key tangential_key();
 
 }  // namespace esfem

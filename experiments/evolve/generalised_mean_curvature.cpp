@@ -33,7 +33,10 @@ void run_generalised_mean_curvature(const Run& run) {
     initial = generalised_mean_curvature_state(law, x0, nu_H.leftCols(3), nu_H.col(3));
   }
   const auto velocity = config.variant.is("velocity", "ritz") ? Variant::ritz : Variant::interpolation;
-  run_flow(GeneralisedMeanCurvatureFlow(run.space, law, velocity, limits_of(run)), run, initial, exact_state);
+  const auto tangential =
+      config.variant.is("tangential", "none") ? Variant::none : Variant::minimal_deformation;
+  run_flow(GeneralisedMeanCurvatureFlow(run.space, law, velocity, limits_of(run), tangential), run, initial,
+           exact_state);
 }
 
 }  // namespace
@@ -45,8 +48,9 @@ std::vector<Entry> generalised_mean_curvature_entries() {
       "Binz, Kovács 2022: v = -V(H) nu, V = H^power, or -H^power for negative powers (-1: inverse mean "
       "curvature flow), H > 0";
   entry.fields = "nu, V";
-  entry.variant = {
-      word("velocity", {"ritz", "interpolation"}, "v_h: Ritz projection of -V_h nu_h, or its nodal values")};
+  entry.variant = {word("velocity", {"ritz", "interpolation"},
+                        "v_h: Ritz projection of -V_h nu_h, or its nodal values; without \"tangential\""),
+                   tangential_key()};
   entry.parameters = {{Key::number, "power", 2, "of H, not 0"}};
   entry.run = run_generalised_mean_curvature;
   entry.exact_solution = exact_sphere;

@@ -11,6 +11,7 @@ MeanCurvatureFlow::Variant mean_curvature_variant(const Settings& asked) {
   using Variant = MeanCurvatureFlow::Variant;
   Variant variant;
   variant.velocity = asked.is("velocity", "ritz") ? Variant::ritz : Variant::interpolation;
+  variant.tangential = asked.is("tangential", "none") ? Variant::none : Variant::minimal_deformation;
   variant.normalise = asked.truth("normalise");
   variant.stabilise = asked.number("stabilise");
   variant.reinitialise = asked.number_or("reinitialise", 0);
@@ -32,9 +33,11 @@ void run_mean_curvature(const Run& run) {
 
 std::string mean_curvature_cure(const EvolveConfig& config) {
   const bool curved = config.mesh.degree > 1;
-  return "try \"flow\": \"dziuk\" or \"bgn\"" + linear_elements(config) + "; on some meshes " +
-         even_elements + (curved ? " " : ", \"variant\": {\"normalise\": true} ") + "or " +
-         smaller_steps(config) + " are enough";
+  const bool is_still = config.variant.has("tangential") && config.variant.is("tangential", "none");
+  return "try " + std::string(is_still ? "\"variant\": {\"tangential\": \"minimal_deformation\"}, " : "") +
+         "\"flow\": \"dziuk\" or \"bgn\"" + linear_elements(config) + "; on some meshes " + even_elements +
+         (curved ? " " : ", \"variant\": {\"normalise\": true} ") + "or " + smaller_steps(config) +
+         " are enough";
 }
 
 }  // namespace
@@ -44,11 +47,12 @@ std::vector<Entry> mean_curvature_entries() {
   entry.flow = "mean_curvature";
   entry.help = "mean curvature flow by kll19 (5.1): evolution equations for nu and H";
   entry.fields = "nu, H";
-  entry.variant = {
-      word("velocity", {"ritz", "interpolation"}, "v_h: Ritz projection of -H_h nu_h, or its nodal values"),
-      {Key::truth, "normalise", false, "nu_h to unit length in the nodes after each step"},
-      {Key::not_negative, "stabilise", 0, "alpha of kll19 §14, 1/time"},
-      reinitialise_key()};
+  entry.variant = {word("velocity", {"ritz", "interpolation"},
+                        "v_h: Ritz projection of -H_h nu_h, or its nodal values; without \"tangential\""),
+                   tangential_key(),
+                   {Key::truth, "normalise", false, "nu_h to unit length in the nodes after each step"},
+                   {Key::not_negative, "stabilise", 0, "alpha of kll19 §14, 1/time"},
+                   reinitialise_key()};
   entry.run = run_mean_curvature;
   entry.exact_solution = exact_mean_curvature_solution;
   entry.starts = {{"nu", "H"}};

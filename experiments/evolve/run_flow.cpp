@@ -18,7 +18,9 @@ std::optional<ExactEvolution> exact_mean_curvature_solution(const EvolveConfig& 
   const auto& name = config.surface->name;
   const auto& parameters = config.surface->parameters;
   if (name == "sphere") return shrinking_sphere(parameters.at("radius"));
-  if (name == "angenent_torus") return shrinking_angenent_torus(parameters.at("scale"));
+  const bool slides = config.variant.has("tangential") && !config.variant.is("tangential", "none");
+  if (name == "angenent_torus")
+    return (slides ? homothetic_angenent_torus : shrinking_angenent_torus)(parameters.at("scale"));
   return {};
 }
 

@@ -24,6 +24,8 @@ Variant willmore_variant(const Settings& asked, const WillmoreProblem& problem) 
   variant.projection = projection_of(asked);
   variant.relaxation = asked.number("relaxation");
   variant.reinitialise = asked.number_or("reinitialise", 0);
+  if (asked.is("tangential", "minimal_deformation"))
+    variant.tangential = MeanCurvatureFlow::Variant::minimal_deformation;
   return variant;
 }
 
@@ -70,6 +72,7 @@ Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, 
       {Key::truth, "theta", nullptr, "the correction (3.7); default: true with a \"surface\", false without"},
       {Key::not_negative, "relaxation", 0,
        "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau"},
+      tangential_key(),
       reinitialise_key()};
   entry.run = [problem](const Run& run) {
     const WillmoreProblem chosen = problem(run);

@@ -31,7 +31,8 @@ double PowerLaw::weight(double V) const {
 }
 
 GeneralisedMeanCurvatureFlow::GeneralisedMeanCurvatureFlow(const SurfaceSpace& space, PowerLaw law,
-                                                           Velocity velocity, const RegularityLimits& limits)
+                                                           Velocity velocity, const RegularityLimits& limits,
+                                                           Tangential tangential)
     : space_(space),
       law_(law),
       velocity_(velocity),
@@ -40,7 +41,10 @@ GeneralisedMeanCurvatureFlow::GeneralisedMeanCurvatureFlow(const SurfaceSpace& s
       M_(space.matrix()),
       A_(space.matrix()),
       D_(space.matrix()),
-      spd_(space.pattern()) {}
+      spd_(space.pattern()) {
+  if (tangential == MeanCurvatureFlow::Variant::minimal_deformation)
+    deformation_ = std::make_unique<MinimalDeformation>(space);
+}
 
 // w in the quadrature points of V~_h, not interpolated: where w varies much its interpolation is worse.
 void GeneralisedMeanCurvatureFlow::assemble_weighted_mass() {
@@ -63,6 +67,29 @@ void GeneralisedMeanCurvatureFlow::assemble_weighted_mass() {
         beyond, law_.power(), law_.power() > 0 ? ">" : "<"));
 }
 
+/// K(x~) v = g(x~, u~), the nodal values of -V~ nu~, or the velocity of minimal deformation rate; and f.
+void GeneralisedMeanCurvatureFlow::velocity_and_load(Field& v) {
+  if (deformation_) {
+    deformation_->velocity(x_tilde_, u_tilde_, M_, A_, v);
+    u_v_.resize(v.rows(), 7);
+    u_v_ << u_tilde_, v;
+    const auto weight = [this](const Pack& V) {
+      return apply([this](double value) { return law_.weight(value); }, V);
+    };
+    space_.assemble_load<7, 4, 0>(x_tilde_, u_v_, MovingCurvatureLoad{0, weight}, f_);
+    return;
+  }
+  space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, MeanCurvatureLoads{0, mass_factor_}, loads_);
+  f_ = loads_.rightCols(4);
+  if (velocity_ == MeanCurvatureFlow::Variant::interpolation) {
+    v = interpolated_velocity(u_tilde_);
+  } else {
+    v = loads_.leftCols(3);
+    spd_.factorise(mass_factor_, M_, 1.0, A_);
+    spd_.solve(v);
+  }
+}
+
 void GeneralisedMeanCurvatureFlow::step(const BdfStep<State>& step, State& next) {
   const double tau = step.tau, delta_0 = step.delta[0];
 
@@ -70,22 +97,13 @@ void GeneralisedMeanCurvatureFlow::step(const BdfStep<State>& step, State& next)
   step.extrapolate(&State::u, u_tilde_);
 
   assemble_regular(space_, x_tilde_, M_, A_);
-  space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, MeanCurvatureLoads{0, mass_factor_}, loads_);
-
-  // K(x~) v = g(x~, u~), or the nodal values of -V~ nu~
-  if (velocity_ == MeanCurvatureFlow::Variant::interpolation) {
-    next.v = interpolated_velocity(u_tilde_);
-  } else {
-    next.v = loads_.leftCols(3);
-    spd_.factorise(mass_factor_, M_, 1.0, A_);
-    spd_.solve(next.v);
-  }
+  velocity_and_load(next.v);
 
   // (delta_0/tau D(x~, u~) + A(x~)) u = f(x~, u~) - D(x~, u~) 1/tau sum_{j>=1} delta_j u^{n-j}
   assemble_weighted_mass();
   step.known_sum(&State::u, sum_);
   D_.multiply(sum_, D_sum_);
-  next.u = loads_.rightCols(4) - D_sum_ / tau;
+  next.u = f_ - D_sum_ / tau;
   spd_.factorise(delta_0 / tau, D_, 1.0, A_);
   spd_.solve(next.u);
 

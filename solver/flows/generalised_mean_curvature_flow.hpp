@@ -30,12 +30,14 @@ class PowerLaw {
 /// d•nu = grad V = V'(H) grad H and grad H = Lap nu + |A|² nu; d•H = Lap V + |A|² V and d•V = V'(H) d•H. So
 ///   w d•nu = Lap nu + |A|² nu,   w d•V = Lap V + |A|² V,   w = 1/V'(H),
 /// and w is a function of V. A step has the weighted mass matrix D(x~)_ij = int w(V~_h) phi_i phi_j in the
-/// place of M(x~), which for V = H gives (5.1).
+/// place of M(x~), which for V = H gives (5.1). With the velocity of minimal deformation rate the right-hand
+/// sides are + w (v . grad) nu and + w v . grad V (MovingCurvatureLoad).
 ///
 /// Unknown nodal vectors: positions x, velocity v = -V nu, and u = (nu, V).
 class GeneralisedMeanCurvatureFlow {
  public:
   using Velocity = MeanCurvatureFlow::Variant::Velocity;
+  using Tangential = MeanCurvatureFlow::Variant::Tangential;
 
   struct State {
     double t = 0;
@@ -48,14 +50,22 @@ class GeneralisedMeanCurvatureFlow {
   /// The space gives elements, degree and quadrature; it must outlive the flow.
   GeneralisedMeanCurvatureFlow(const SurfaceSpace& space, PowerLaw law,
                                Velocity velocity = MeanCurvatureFlow::Variant::ritz,
-                               const RegularityLimits& limits = {});
+                               const RegularityLimits& limits = {},
+                               Tangential tangential = MeanCurvatureFlow::Variant::none);
 
   /// One step of BDF: fills next.x, next.v and next.u. Throws SingularityError where V has left the range of
   /// the law, and where the surface is singular or no longer resolved (regularity.hpp).
   void step(const BdfStep<State>& step, State& next);
 
+  /// What tangential motion keeps from step to step, for checkpoints; null without.
+  nlohmann::json progress() const { return deformation_ ? deformation_->progress() : nullptr; }
+  void resume(const nlohmann::json& saved) {
+    if (deformation_) deformation_->resume(saved);
+  }
+
  private:
   void assemble_weighted_mass();
+  void velocity_and_load(Field& v);
 
   const SurfaceSpace& space_;
   PowerLaw law_;
@@ -64,7 +74,8 @@ class GeneralisedMeanCurvatureFlow {
   double mass_factor_;  ///< 1/L²
   SymmetricMatrix M_, A_, D_;
   SpdSolver spd_;
-  Field x_tilde_, u_tilde_, loads_, sum_, D_sum_, H_;
+  std::unique_ptr<MinimalDeformation> deformation_;  ///< none without tangential motion
+  Field x_tilde_, u_tilde_, loads_, u_v_, f_, sum_, D_sum_, H_;
 };
 
 /// The state with given positions, normals (N x 3) and mean curvatures (N x 1), v = -V nu in the nodes; t =

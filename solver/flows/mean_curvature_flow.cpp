@@ -14,9 +14,31 @@ MeanCurvatureFlow::MeanCurvatureFlow(const SurfaceSpace& space, Variant variant,
       M_(space.matrix()),
       A_(space.matrix()),
       spd_(space.pattern()),
-      reinitialisation_(space, variant.reinitialise, {}) {}
+      reinitialisation_(space, variant.reinitialise, {}) {
+  if (variant.tangential == Variant::minimal_deformation)
+    deformation_ = std::make_unique<MinimalDeformation>(space);
+}
 
+/// g (without tangential motion) and f.
+void MeanCurvatureFlow::assemble_loads(const Field& u) {
+  space_.assemble_load<4, 7, 3>(x_tilde_, u, MeanCurvatureLoads{variant_.stabilise, mass_factor_}, loads_);
+  f_ = loads_.rightCols(4);
+}
+
+/// f with the convective term of v.
+void MeanCurvatureFlow::assemble_load_along(const Field& v) {
+  u_v_.resize(v.rows(), 7);
+  u_v_ << u_tilde_, v;
+  const auto weight = [](const Pack&) { return 1.0; };
+  space_.assemble_load<7, 4, 0>(x_tilde_, u_v_, MovingCurvatureLoad{variant_.stabilise, weight}, f_);
+}
+
+/// After assemble_loads(u), unless there is tangential motion.
 void MeanCurvatureFlow::velocity(const Field& u, Field& v) {
+  if (deformation_) {
+    deformation_->velocity(x_tilde_, u, M_, A_, v);
+    return;
+  }
   if (variant_.velocity == Variant::interpolation) {
     v = interpolated_velocity(u);
     return;
@@ -38,24 +60,24 @@ void MeanCurvatureFlow::step(const BdfStep<State>& step, State& next) {
   step.extrapolate(&State::u, u_tilde_);
 
   assemble_regular(space_, x_tilde_, M_, A_);
-  const MeanCurvatureLoads loads{variant_.stabilise, mass_factor_};
-  space_.assemble_load<4, 7, 3>(x_tilde_, u_tilde_, loads, loads_);
 
   // (5.1), first line: K(x̃) v = g(x̃, ũ)
   const bool u_follows_x = variant_.reinitialise > 0;
-  if (!u_follows_x) velocity(u_tilde_, next.v);
+  if (!deformation_) assemble_loads(u_tilde_);
+  if (deformation_ || !u_follows_x) velocity(u_tilde_, next.v);
+  if (deformation_) assemble_load_along(next.v);
 
   // (5.1), second line: (delta_0/tau M(x̃) + A(x̃)) u = f(x̃, ũ) - M(x̃) 1/tau sum_{j>=1} delta_j u^{n-j}
   step.known_sum(&State::u, sum_);
   M_.multiply(sum_, M_sum_);
-  next.u = loads_.rightCols(4) - M_sum_ / tau;
+  next.u = f_ - M_sum_ / tau;
   spd_.factorise(delta_0 / tau, M_, 1.0, A_);
   spd_.solve(next.u);
   if (variant_.normalise) next.u.leftCols(3).rowwise().normalize();
 
   // Where ũ comes from the surface, a step with it would be explicit in x, and stable for tau < c h² alone.
   if (u_follows_x) {
-    space_.assemble_load<4, 7, 3>(x_tilde_, next.u, loads, loads_);
+    if (!deformation_) assemble_loads(next.u);
     velocity(next.u, next.v);
   }
 

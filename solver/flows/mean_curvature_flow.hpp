@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <memory>
+
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/minimal_deformation.hpp"
 #include "solver/geometry/regularity.hpp"
 #include "solver/geometry/reinitialisation.hpp"
 #include "solver/linalg/spd_solver.hpp"
@@ -21,6 +24,9 @@ class MeanCurvatureFlow {
     /// that it does not depend on units (the papers have L = 1); interpolation: its nodal interpolation
     /// (kll21 Remark 3.1).
     enum Velocity { ritz, interpolation } velocity = ritz;
+    /// minimal_deformation: v_h is the velocity of MinimalDeformation, of normal speed -H_h, instead of these
+    /// two; the derivatives of nu and H along it have a convective term (MovingCurvatureLoad).
+    enum Tangential { none, minimal_deformation } tangential = none;
     bool normalise = false;  ///< rescale nu_h to unit length at every node after each step (§13.2)
     double stabilise = 0;    ///< alpha >= 0 of the term -alpha int (nu_h - nu_Gamma_h) . phi of §14; 1/time
     /// Tolerance of nu and H, see Reinitialisation; 0: they are never taken from the surface. Otherwise v
@@ -48,6 +54,12 @@ class MeanCurvatureFlow {
   /// The same for a new state and, then, those of its history; the time loop calls it after each step.
   void settle(History<State>& past, State& next) { reinitialisation_.apply(past, next); }
 
+  /// What tangential motion keeps from step to step, for checkpoints; null without.
+  nlohmann::json progress() const { return deformation_ ? deformation_->progress() : nullptr; }
+  void resume(const nlohmann::json& saved) {
+    if (deformation_) deformation_->resume(saved);
+  }
+
  private:
   /// How Reinitialisation sees u.
   struct Fields {
@@ -56,6 +68,8 @@ class MeanCurvatureFlow {
     void complete(State& state) const;
   };
 
+  void assemble_loads(const Field& u);
+  void assemble_load_along(const Field& v);
   void velocity(const Field& u, Field& v);
 
   const SurfaceSpace& space_;
@@ -64,8 +78,9 @@ class MeanCurvatureFlow {
   double mass_factor_;  ///< 1/L²
   SymmetricMatrix M_, A_;
   SpdSolver spd_;
+  std::unique_ptr<MinimalDeformation> deformation_;  ///< none without tangential motion
   Reinitialisation<State, Fields> reinitialisation_;
-  Field x_tilde_, u_tilde_, loads_, sum_, M_sum_;
+  Field x_tilde_, u_tilde_, loads_, u_v_, f_, sum_, M_sum_;
 };
 
 /// The state with given positions, normals (N x 3) and mean curvatures (N x 1), and v = -H nu in the nodes.

@@ -131,6 +131,14 @@ WillmoreFlow::WillmoreFlow(const SurfaceSpace& space, Variant variant, Field the
   if (!(variant.relaxation >= 0))
     throw InputError(format("relaxation: found %g, expected a number >= 0", variant.relaxation));
   if (variant.F == Variant::implicit) implicit_ = std::make_unique<ImplicitCoupling>();
+  // Its v belongs to V~, so that no multiplier of the step could keep the area or the volume of x^n.
+  if (variant.tangential == MeanCurvatureFlow::Variant::minimal_deformation &&
+      !multipliers_.unknowns().empty())
+    throw InputError(
+        "tangential motion of minimal deformation rate with prescribed area or volume: expected one of them "
+        "alone");
+  if (variant.tangential == MeanCurvatureFlow::Variant::minimal_deformation)
+    deformation_ = std::make_unique<MinimalDeformation>(space);
 }
 
 WillmoreFlow::~WillmoreFlow() = default;
@@ -138,12 +146,28 @@ WillmoreFlow::~WillmoreFlow() = default;
 nlohmann::json WillmoreFlow::progress() const {
   nlohmann::json saved = lagged_.progress();
   saved.update(esfem::progress(tilde_));
+  if (deformation_) saved["deformation"] = deformation_->progress();
   return saved;
 }
 
 void WillmoreFlow::resume(const nlohmann::json& saved) {
   lagged_.resume(saved);
   esfem::resume(tilde_, saved, space_.dofs());
+  if (deformation_) deformation_->resume(saved.at("deformation"));
+}
+
+/// v of the normal speed V~, and its convective term, (v . grad) u~ tested with phi.
+void WillmoreFlow::move_along_surface(Field& v) {
+  nu_V_.resize(u_w_tilde_.rows(), 4);
+  nu_V_ << u_w_tilde_.middleCols(1, 3), -u_w_tilde_.col(4);
+  deformation_->velocity(x_tilde_, nu_V_, M_, A_, v);
+  u_v_.resize(v.rows(), 7);
+  u_v_ << u_w_tilde_.leftCols(4), v;
+  const auto convection = [](const PointData<7>& p, Integrand<4, 0>& load) {
+    for (int l = 0; l < 4; ++l)
+      load.value[l] = p.u[4] * p.grad[l][0] + p.u[5] * p.grad[l][1] + p.u[6] * p.grad[l][2];
+  };
+  space_.assemble_load<7, 4, 0>(x_tilde_, u_v_, convection, convection_);
 }
 
 void WillmoreFlow::extrapolate(const BdfStep<State>& step) {
@@ -182,6 +206,7 @@ void WillmoreFlow::assemble_loads(const BdfStep<State>& step) {
   u_.leftCols(4) = loads_.leftCols(4) - M_sum_ / step.tau;
   w_.leftCols(4) = loads_.rightCols(4);
   if (theta_.size() > 0) w_.leftCols(4) += theta_;
+  if (deformation_) u_.leftCols(4) += convection_;
   for (std::size_t i = 0; i < unknowns; ++i) {
     const MultiplierLoads of_multiplier{multipliers_.unknowns()[i]};
     space_.assemble_load<8, 4, 3>(x_tilde_, u_w_tilde_, of_multiplier, loads_);
@@ -216,7 +241,7 @@ void WillmoreFlow::advance(const BdfStep<State>& step, State& next) const {
   if (variant_.projection == Variant::after_steps) project(next.u, next.w);
 
   // (3.4): v = V nu, delta_0 x = tau v - sum_{j>=1} delta_j x^{n-j}
-  next.v = interpolated_velocity(next.u, next.w);
+  if (!deformation_) next.v = interpolated_velocity(next.u, next.w);
   next.x = (step.tau * next.v - x_sum_) / step.delta[0];
 }
 
@@ -232,6 +257,7 @@ void WillmoreFlow::rates_of_x(const BdfStep<State>& step, const State& next) {
 void WillmoreFlow::step(const BdfStep<State>& step, State& next) {
   extrapolate(step);
   assemble_regular(space_, x_tilde_, M_, A_);
+  if (deformation_) move_along_surface(next.v);
   assemble_loads(step);
   solve_systems(step);
 

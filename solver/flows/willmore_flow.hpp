@@ -6,6 +6,7 @@
 #include "solver/assembly/surface_space.hpp"
 #include "solver/flows/area_and_volume.hpp"
 #include "solver/flows/lagged_block_solver.hpp"
+#include "solver/flows/mean_curvature_flow.hpp"
 #include "solver/flows/willmore_law.hpp"
 #include "solver/geometry/regularity.hpp"
 #include "solver/geometry/reinitialisation.hpp"
@@ -47,6 +48,11 @@ class WillmoreFlow {
     double relaxation = 0;
     /// Tolerance of nu and H, see Reinitialisation; 0: they are never taken from the surface.
     double reinitialise = 0;
+    /// minimal_deformation: v is the velocity of MinimalDeformation with the normal speed V~, and the
+    /// equation of u has a convective term: normal motion has M d°u = A w + .., and along v the derivative is
+    /// d•u = d°u + (v . grad) u. (3.5b) has no time derivative: V and z are those of the surface and u at
+    /// each time, however the nodes move.
+    MeanCurvatureFlow::Variant::Tangential tangential = MeanCurvatureFlow::Variant::none;
   };
 
   struct State {
@@ -86,6 +92,7 @@ class WillmoreFlow {
 
  private:
   struct ImplicitCoupling;
+  void move_along_surface(Field& v);
   void extrapolate(const BdfStep<State>& step);
   void assemble_loads(const BdfStep<State>& step);
   void solve_systems(const BdfStep<State>& step);
@@ -115,6 +122,8 @@ class WillmoreFlow {
   Field x_tilde_, u_tilde_, w_tilde_, lambda_tilde_, u_w_tilde_, loads_, x_sum_, u_sum_, M_sum_;
   Field u_, w_;  ///< u_0, u_1, .. and w_0, w_1, .., side by side
   std::array<Field, 2> x_rates_;
+  std::unique_ptr<MinimalDeformation> deformation_;  ///< none without tangential motion
+  Field nu_V_, u_v_, convection_;
 };
 
 /// Start of a run. V has the multipliers with which it leaves the prescribed ones of area and volume as they

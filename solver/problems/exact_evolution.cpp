@@ -145,6 +145,25 @@ ExactEvolution shrinking_angenent_torus(double initial_scale) {
   return exact;
 }
 
+ExactEvolution homothetic_angenent_torus(double initial_scale) {
+  ExactEvolution exact = shrinking_angenent_torus(initial_scale);
+  const double squared = initial_scale * initial_scale;
+  exact.trajectories = [squared](const Field& x0, double t) -> Field {
+    return std::sqrt(1 - t / squared) * x0;
+  };
+  exact.fields = [squared, along_normals = exact.fields](double t, const SurfacePoints& at,
+                                                         FieldsAtPoints& out) {
+    along_normals(t, at, out);
+    const double rate = -0.5 / (squared - t);
+    for (int i = 0; i < 3; ++i) {
+      out.value[3 + i] = rate * at.y[i];
+      for (int j = 0; j < 3; ++j)
+        out.gradient[3 + i][j] = rate * ((i == j ? 1.0 : 0.0) - at.normal[i] * at.normal[j]);
+    }
+  };
+  return exact;
+}
+
 namespace {
 
 /// A surface at rest with quantities x, nu, H; mean_curvature(at, gradient) returns H and sets grad_Gamma H.

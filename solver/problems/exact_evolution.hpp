@@ -58,6 +58,11 @@ ExactEvolution shrinking_sphere(double initial_radius);
 /// initial positions of trajectories must lie on the torus.
 ExactEvolution shrinking_angenent_torus(double initial_scale = 1);
 
+/// The same torus with the velocity of minimal deformation rate: v = -x/(2(s² - t)), by which it shrinks as a
+/// whole. Its normal part is -H, and -Lap x = H nu gives -Lap v = -H/(2(s² - t)) nu, a multiple of nu
+/// (flows/minimal_deformation.hpp). Trajectories are straight lines to the centre, for 0 <= t < s².
+ExactEvolution homothetic_angenent_torus(double initial_scale = 1);
+
 /// A sphere at rest, stationary under Willmore flow and surface diffusion (kll21 §7.1). Quantities x, nu, H.
 ExactEvolution stationary_sphere(double radius);
 

@@ -164,6 +164,10 @@ TEST_F(EvolveLimits, ACureIsNamedForEveryFlow) {
   expect(1, "mean_curvature", "try \"flow\": \"dziuk\" or \"bgn\"; on some meshes even elements (");
   expect(2, "mean_curvature", "try \"flow\": \"dziuk\" or \"bgn\" with \"degree\": 1; on some meshes even");
   EXPECT_THAT(config.entry->cure(config), Not(HasSubstr("normalise"))) << "which helps flat elements only";
+  config.variant = Settings(json::object(), entry_named("mean_curvature", "", "test").variant, "test");
+  expect(2, "mean_curvature",
+         "try \"variant\": {\"tangential\": \"minimal_deformation\"}, \"flow\": \"dziuk\"");
+  config.variant = {};
   expect(2, "bgn", "try \"flow\": \"dziuk\" with \"degree\": 1; on some meshes even elements (");
   expect(1, "dziuk", "try \"flow\": \"bgn\"; on some meshes even elements (");
   expect(2, "willmore", "try smaller steps, \"variant\": {\"relaxation\"");

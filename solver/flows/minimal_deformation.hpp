@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "solver/assembly/surface_space.hpp"
+#include "solver/linalg/spd_solver.hpp"
+
+namespace esfem {
+
+/// The velocity of minimal deformation rate (Hu, Li, Numer. Math. 152, 2022): of all v with v . nu = -V the
+/// one with the least int |grad v|². With the multiplier kappa of the constraint, -Lap v = kappa nu: find v
+/// in S_h^3 and kappa in S_h with
+///   int grad v : grad chi = int kappa nu . chi    for all chi in S_h^3,
+///   int (v . nu) phi = -int V phi                 for all phi in S_h.
+///
+/// With A_a = A the stiffness matrix and (B_a)_ij = int nu_a phi_i phi_j, a = 1, 2, 3, it is the saddle point
+/// system
+///   A v_a = B_a kappa,   sum_a B_a v_a = -M V,
+/// symmetric and indefinite, whose first block is singular. It is reduced to kappa: A_g is A with a node of
+/// each component of the surface held fixed, c_a is the mean motion of a component, C_a = B_a 1 on it. Then
+/// v_a = A_g^-1 B_a kappa + c_a, and
+///   S kappa + sum_a C_a c_a = -M V,   C_a^T kappa = 0,   S = sum_a B_a A_g^-1 B_a,
+/// where S is positive definite: conjugate gradients on the kappa with C_a^T kappa = 0 (Gould, Hribar,
+/// Nocedal, SIAM J. Sci. Comput. 23, 2001). S and M (A + M/L²)^-1 M have the same principal symbol, since
+/// sum_a nu_a² = 1, so that P = M^-1 (A + M/L²) M^-1 leaves the identity and a compact operator: the number
+/// of iterations does not depend on the mesh. It takes three unknowns a node less than a factorisation of the
+/// whole system does.
+class MinimalDeformation {
+ public:
+  /// The space must outlive the object.
+  explicit MinimalDeformation(const SurfaceSpace& space);
+
+  /// v (N x 3) on Gamma_h[x] with its matrices M and A, nu_V: N x 4, the normal and V. Throws NumericsError
+  /// when a matrix is singular or not finite, or the iteration does not converge. No allocation after the
+  /// first call.
+  void velocity(const Field& x, const Field& nu_V, const SymmetricMatrix& M, const SymmetricMatrix& A,
+                Field& v);
+
+  /// The multiplier of the last velocity, N x 1.
+  const Field& kappa() const { return kappa_; }
+  /// Iterations that it took.
+  int iterations() const { return iterations_; }
+
+  /// kappa of the last velocity and its change, from which the next iteration starts, for checkpoints.
+  nlohmann::json progress() const;
+  /// Resumes from there. Throws InputError when a field has not N rows.
+  void resume(const nlohmann::json& saved);
+
+ private:
+  void ground(const SymmetricMatrix& A);
+  void multiply_B(const Field& kappa, Field& out) const;
+  void multiply_B_transposed(const Field& v, Field& out) const;
+  void multiply_S(const Field& p, Field& v_p);
+  void guess();
+  void precondition(const SymmetricMatrix& A, const Field& r, Field& out);
+  void factorise_constraint(const SymmetricMatrix& A);
+  void project();
+
+  const SurfaceSpace& space_;
+  double mass_factor_;            ///< 1/L²
+  std::vector<int> component_;    ///< of the surface, by node
+  std::vector<int> fixed_nodes_;  ///< one in each component
+  SymmetricMatrix B_[3], grounded_;
+  SpdSolver grounded_solver_, mass_solver_;
+  Field C_, PC_;  ///< three columns a component
+  Eigen::LDLT<Field> CPC_;
+  Field kappa_, kappa_change_, old_kappa_, mean_motion_;
+  Field V_, b_, ones_, r_, z_, p_, v_p_, S_p_, work_;
+  int iterations_ = 0;
+};
+
+}  // namespace esfem
