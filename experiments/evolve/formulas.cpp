@@ -197,7 +197,11 @@ json formula_schema() {
 
 json exact_schema() {
   const json field = {{"anyOf", {formula_schema(), list_schema(3)}}};
-  return {{"type", "object"}, {"additionalProperties", field}, {"description", "a solution, of x, y, z, t"}};
+  return {
+      {"type", "object"},
+      {"additionalProperties", field},
+      {"description",
+       "a solution, of x, y, z, t; x: where the nodes are that start in x, y, z; level_set: its surface"}};
 }
 
 json definitions_schema() {

@@ -83,6 +83,10 @@ json history_in(const JsonReader& file) {
 std::string difference(const json& description, const JsonReader& whole, const JsonReader& file,
                        const json& history) {
   const json earlier = file.has("config") ? file.object("config") : json::object();
+  std::set<std::string> equations = {"definitions"};
+  for (const Entry& entry : entries())
+    for (const FormulaKey& key : entry.formulas)
+      if (key.name != "initial") equations.insert(key.name);
   const auto differs = [&](const char* key) {
     const bool is_there = earlier.contains(key);
     if (!whole.has(key)) return is_there && std::string(key) != "surface";
@@ -90,6 +94,8 @@ std::string difference(const json& description, const JsonReader& whole, const J
   };
   for (const char* key : {"flow", "problem", "surface", "variant", "parameters", "quadrature"})
     if (differs(key)) return std::string("another ") + key;
+  for (const std::string& key : equations)
+    if (differs(key.c_str())) return "another \"" + key + "\"";
   if (whole.has("adaptive")) return "equal steps, not adaptive ones";
   if (whole.has("tau") && whole.number("tau") != history.at("tau"))
     return format("another tau (%g)", history.at("tau").get<double>());

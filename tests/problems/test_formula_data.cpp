@@ -71,6 +71,44 @@ TEST(FormulaKinetics, SphericalHarmonicsGrowAtTuringsRates) {
   EXPECT_GT(std::abs(measured - expected), 0.05 * std::abs(expected));
 }
 
+/// The largest entry of the residual of (2.20) after a step of backward Euler,
+///   int v . phi + alpha grad v : grad phi + beta grad x : grad phi + sign grad beta . phi - g nu . phi
+/// on the old surface, for alpha = 1 + x² + u, beta = 1/2 + z² and g = 1 + x u.
+double residual_of_law(const Mesh& mesh, double sign) {
+  const SurfaceSpace space(mesh);
+  const Field& x = mesh.nodes;
+  const FormulaNames names = names_of_kinetics(1, {});
+  const auto formula = [&](const char* text) { return Formula(text, names, "kinetics"); };
+  const VariableLaw law = {formula_nodal_function(formula("1+x^2+u")),
+                           formula_nodal_function(formula("1/2+z^2"))};
+  CoupledKinetics flow(space, formula_kinetics({formula("0"), formula("1+x*u")}), {1, 1, {1}}, {}, {}, law);
+  CoupledDiffusionState end;
+  const Field u = x.col(1).array().sin();
+  integrate(flow, {1, 0.1, 1, parse_start("cascade")},
+            {coupled_diffusion_state(space, 0, x, Field::Zero(x.rows(), 3), u)},
+            [&](int, const CoupledDiffusionState& state) { end = state; });
+  Field inputs(x.rows(), 9), residual, alpha, beta;
+  law.alpha(0.1, x, u, alpha);
+  law.beta(0.1, x, u, beta);
+  inputs << end.v, end.x, alpha, beta, u;
+  const auto weak_form = [&](const PointData<9>& p, Integrand<3, 3>& out) {
+    const Pack g = 1.0 + p.x[0] * p.u[8];
+    for (int i = 0; i < 3; ++i) {
+      out.value[i] = p.u[i] + sign * p.grad[7][i] - g * p.normal[i];
+      for (int j = 0; j < 3; ++j) out.flux[i][j] = p.u[6] * p.grad[i][j] + p.u[7] * p.grad[3 + i][j];
+    }
+  };
+  space.assemble_load<9, 3, 3>(x, inputs, weak_form, residual);
+  return residual.cwiseAbs().maxCoeff();
+}
+
+TEST(FormulaLaw, AStepFulfilsTheWeakFormWithVaryingAlphaAndBeta) {
+  Mesh mesh = lagrange_mesh(icosphere(1, 1), 2);
+  mesh.nodes.col(2) *= 0.7;
+  EXPECT_LT(residual_of_law(mesh, 1), 1e-13);
+  for (double broken : {0, -1}) EXPECT_GT(residual_of_law(mesh, broken), 1e-3);
+}
+
 TEST(FormulaVelocity, IsThatOfTheLevelSet) {
   const FormulaNames names = names_in_space_time({});
   const Velocity formula =
