@@ -24,14 +24,14 @@ class MeanCurvatureFlow {
     /// that it does not depend on units (the papers have L = 1); interpolation: its nodal interpolation
     /// (kll21 Remark 3.1).
     enum Velocity { ritz, interpolation } velocity = ritz;
-    /// minimal_deformation: v_h is the velocity of MinimalDeformation, of normal speed -H_h, instead of these
-    /// two; the derivatives of nu and H along it have a convective term (MovingCurvatureLoad).
-    enum Tangential { none, minimal_deformation } tangential = none;
     bool normalise = false;  ///< rescale nu_h to unit length at every node after each step (§13.2)
     double stabilise = 0;    ///< alpha >= 0 of the term -alpha int (nu_h - nu_Gamma_h) . phi of §14; 1/time
     /// Tolerance of nu and H, see Reinitialisation; 0: they are never taken from the surface. Otherwise v
     /// belongs to the new u, not to the extrapolated one.
     double reinitialise = 0;
+    /// minimal_deformation: v_h is the velocity of MinimalDeformation, of normal speed -H_h, instead of that
+    /// of `velocity`; the derivatives of nu and H along it have a convective term (MovingCurvatureLoad).
+    enum Tangential { none, minimal_deformation } tangential = none;
   };
 
   struct State {
