@@ -134,7 +134,7 @@ double out_of_round(const SurfaceSpace& space, const Field& x) {
 /// Records each step, and ends the run when the shape is stationary.
 struct Observer {
   const SurfaceSpace& space;
-  double H_0, scale;  ///< sqrt(area/(4 pi))
+  double H_0, scale, unit_of_time;  ///< scale: sqrt(area/(4 pi))
   RunRecorder& recorder;
   DiscreteCurvature curvature{space};
 
@@ -152,7 +152,7 @@ struct Observer {
     series["lambda_V"].push_back(state.lambda(0, Multipliers::volume) * std::pow(scale, 3));
     series["speed"].push_back(speed);
     series["out_of_round"].push_back(out_of_round(space, state.x));
-    return state.t < end_time / 4 * std::pow(scale, 4) || speed > stationary_speed;
+    return state.t < end_time / 4 * unit_of_time || speed > stationary_speed;
   }
 };
 
@@ -199,8 +199,8 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
   //    curvature.
   const VesicleShape& shape = shape_of(choice);
   const double area = space.area(mesh.nodes), volume = space.volume(mesh.nodes),
-               scale = choice["branch"] == "red_blood_cell" ? std::sqrt(area / (4 * pi)) : 1,
-               unit_of_time = std::pow(scale, 4);
+               scale = std::sqrt(area / (4 * pi)),
+               unit_of_time = choice["branch"] == "red_blood_cell" ? std::pow(scale, 4) : 1;
   WillmoreFlow::Variant variant;
   variant.law = helfrich_law(shape.H_0 / scale);
   variant.prescribed.area = constant_target(area);
@@ -216,7 +216,7 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
 
   // 3. The time steps, and the row of the table.
   RunRecorder recorder(space, snapshot_plan(folder, {}, "helfrich", row));
-  Observer observe{space, shape.H_0 / scale, scale, recorder};
+  Observer observe{space, shape.H_0 / scale, scale, unit_of_time, recorder};
   run_recorded(flow,
                AdaptiveSteps{"u", 2, end_time * unit_of_time, tolerance, first_tau * unit_of_time,
                              row.tau * unit_of_time},

@@ -12,8 +12,8 @@ const std::vector<Entry>& entries() {
     std::vector<Entry> list;
     for (const auto& of_file :
          {mean_curvature_entries, dziuk_entries, bgn_entries, generalised_mean_curvature_entries,
-          willmore_entries, helfrich_entries, willmore_competitor_entries, coupled_diffusion_entries, kinetics_entries,
-          cahn_hilliard_entries, mixture_entries})
+          willmore_entries, helfrich_entries, willmore_competitor_entries, coupled_diffusion_entries,
+          kinetics_entries, cahn_hilliard_entries, mixture_entries})
       for (Entry& entry : of_file()) list.push_back(std::move(entry));
     return list;
   }();
