@@ -20,6 +20,7 @@ DEGREES, ORDERS = (1, 2, 3, 4), (1, 2, 3, 4, 5)
 LABELS = ("flow", "degree", "bdf", "run")
 FLOWS = {
     "mean_curvature": ("mean curvature flow, (5.1)", ("x", "v", "nu", "H")),
+    "minimal_deformation": ("(5.1), minimal deformation rate", ("x", "v", "nu", "H")),
     "dziuk": ("mean curvature flow, Dziuk", ("x", "v", "nu", "H")),
     "generalised_mean_curvature": (r"generalised mean curvature flow, $V = H^2$", ("x", "v", "nu", "V")),
     "coupled_diffusion": ("surface coupled to diffusion", ("x", "v", "u")),
