@@ -36,7 +36,7 @@ sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.
 
 .PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu test-norms sanitize fuzz crash \
         crash-check consumer-check format format-check samples tables-check verdicts claims-check independent plots-check report \
-        report-check packages-check packages-check-each gallery \
+        report-check packages-check packages-check-each gallery groups \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -61,7 +61,9 @@ help:
 	@echo "-jN                N jobs at once instead of one per core ($(cores) here)"
 	@echo "BUILD=FOLDER       build there instead of in build/"
 	@echo "CXX=clang++, CMAKE_GENERATOR=Ninja, OPTIONS=-D...  another compiler, build tool, options for CMake"
-	@echo 'LAUNCH="srun -n1"  prefix of each run's command: make figures -j100 LAUNCH="srun -n1"'
+	@echo 'GROUP=60           runs in groups of about 60 s, each one process; failed runs are tried twice and stop no others'
+	@echo 'LAUNCH="srun -n1"  prefix of the command of each run or group; docs/cluster.md says how with Slurm'
+	@echo "make groups        the groups alone, for a job array -> results/paper/cells/.groups/1, 2, ..."
 	@echo "Interrupt it at any time and repeat the command: finished runs are kept."
 
 # prepare(step, kinds of packages, targets): packages, configuration and executables, as far as a target needs them.
@@ -236,9 +238,9 @@ clean:
 distclean: clean
 	rm -rf results figures report
 
-# run(preset, stems, goal): lists the cells of the stems, then makes the goal of cells.mk. The cells
-# depend on `.executable`, the checksum of their executable: a build that leaves it unchanged outdates nothing.
-define run
+# list_cells(preset, stems): the cells of each stem, and how many are to do. The cells depend on `.executable`, the checksum
+# of their executable: a build that leaves it unchanged outdates nothing.
+define list_cells
 for stem in $(2); do
   folder=results/$(1)/cells/$$stem; mkdir -p $$folder
   sha256sum <$(BIN)/$$stem >$$folder/.executable.new
@@ -252,5 +254,24 @@ done | awk -v start=$$(date +%s) -v progress=results/$(1)/cells/.progress '
   NF { n += 1; s += $$1 }
   END { if (n) printf "== %d runs to do, %d are done; about %.0f s on one core\n", n, NR - n, s
         printf "%d %d %d %g\n", start, NR - n, NR, s >progress }'
-$(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" PYTHON=$(PYTHON) $(3)
 endef
+
+# run(preset, stems, goal): lists the cells of the stems, then makes the goal of cells.mk. With GROUP the cells are run before,
+# in groups, and the goal is made of the stems that are complete.
+make_cells = $(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" PYTHON=$(PYTHON) $(3)
+define run
+$(call list_cells,$(1),$(2))
+$(if $(GROUP),$(call run_groups,$(1),$(2),$(3)),$(call make_cells,$(1),$(2),$(3)))
+endef
+define run_groups
+experiments/harness/cell_groups pack $(1) "$(GROUP)" $(2)
+$(call make_cells,$(1),$(2),groups)
+complete=$$(experiments/harness/cell_groups complete $(1) $(2) | xargs)
+[ -z "$$complete" ] || $(call make_cells,$(1),$$complete,$(3))
+experiments/harness/cell_groups failed $(1) $(2)
+endef
+
+# For a job array: the groups alone (docs/cluster.md).
+groups: prepare-figures
+	@$(call list_cells,paper,$(stems))
+	experiments/harness/cell_groups pack paper "$(or $(GROUP),60)" $(stems)
