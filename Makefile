@@ -35,8 +35,8 @@ programs := evolve check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
 .PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu test-norms sanitize fuzz crash \
-        crash-check consumer-check format format-check samples tables-check verdicts claims-check independent plots-check report \
-        report-check packages-check packages-check-each gallery groups \
+        crash-check consumer-check format format-check samples samples-check tables-check verdicts claims-check independent \
+        plots-check report report-check packages-check packages-check-each gallery groups \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -54,7 +54,8 @@ help:
 	@echo "make bench         ms per step and phase at growing sizes, factorisations compared with CHOLMOD and MUMPS"
 	@echo "make bench-peers   a step compared with DOLFINx and PETSc, where they are installed"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
-	@echo "make gallery       pictures in docs/ and two tables of README.md, from the published results"
+	@echo "make samples       runs the configurations in reference/examples and compares their ends with what is expected"
+	@echo "make gallery       pictures in docs/ and two tables of README.md, from the published results and make samples"
 	@echo "make clean         remove build/ and results/check/; published results and figures are kept and reused"
 	@echo "make distclean     remove results/, figures/ and report/ as well"
 	@echo
@@ -101,9 +102,10 @@ $(PYTHON) plots/report.py $(3)/verdicts.json $(2) $(3) $(4)
 endef
 report: prepare-report
 	@$(call report_of,paper,figures,report)
-gallery: report evolve
+gallery: report samples
 	@$(BUILD)/bin/evolve --schema >$(BUILD)/evolve.schema.json
 	@$(PYTHON) plots/gallery.py report/verdicts.json $(BUILD)/evolve.schema.json figures README.md docs
+	$(PYTHON) plots/examples.py $(BUILD)/samples docs
 # The page alone: printing it takes longer, and its test prints a small one.
 report-check:
 	@$(call report_of,check,$(BUILD)/figures-check,$(BUILD)/report-check,--expect tables --without-pdf)
@@ -112,8 +114,8 @@ $(stems): %: prepare-%
 	+@$(call run,paper,$@,all)
 
 # All parts of the check run; those that failed are listed at the end. Files they read are traced for the last part.
-check_parts := format-check test-library test-plots test-vtu test-norms crash-check consumer-check samples tables-check verdicts \
-               claims-check independent plots-check report-check packages-check
+check_parts := format-check test-library test-plots test-vtu test-norms crash-check consumer-check samples-check tables-check \
+               verdicts claims-check independent plots-check report-check packages-check
 check: build
 	+@failed=""
 	for part in $(check_parts); do
@@ -126,7 +128,7 @@ check: build
 
 # `check` has built what its parts need; a part that is run on its own builds first.
 ifeq ($(MAKELEVEL),0)
-test-library test-plots test-vtu test-norms crash-check consumer-check samples tables-check verdicts claims-check independent \
+test-library test-plots test-vtu test-norms crash-check consumer-check samples-check tables-check verdicts claims-check independent \
   plots-check report-check packages-check: build
 endif
 
@@ -137,9 +139,9 @@ test: test-library test-plots test-vtu test-norms
 test-library:
 	@$(call run_tests,$(BUILD))
 test-plots:
-	@$(PYTHON) -m unittest discover -q -s tests/packages & packages=$$!
+	@for folder in packages samples; do $(PYTHON) -m unittest discover -q -s tests/$$folder || exit; done & scripts=$$!
 	(cd plots && basename -s .py -a test_*.py | xargs -n5 -P$(local_jobs) $(PYTHON) -m unittest -q)
-	wait $$packages
+	wait $$scripts
 # VTK and ParaView read the snapshots where they are installed; so their files belong to no package of the lists.
 test-vtu:
 	@$(PYTHON) tests/mesh/test_vtu_files.py -q
@@ -185,8 +187,12 @@ format-check:
 	@$(call prepare,deps,format)
 	clang-format --dry-run -Werror $(sources) && echo "$(words $(sources)) files are formatted"
 
+# The configurations of reference/examples, compared with expected.json beside them; a few minutes.
+samples: evolve
+	@$(PYTHON) tests/samples/run_samples.py --build $(BUILD) --jobs $(local_jobs)
+
 # The sample command lines in the heads of the experiments must be valid.
-samples:
+samples-check:
 	@for stem in $(stems); do
 	  sed -n "s|^//.*build/bin/\($$stem .*\)|$(BIN)/\1|p" experiments/$$stem.cpp | sed 's/ --output [^ ]*//' | while read -r command; do
 	    $$command --list >/dev/null; echo "accepted: $$command"
