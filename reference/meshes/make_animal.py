@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How reference/meshes/animal.ply was made: an animal of ten soft ellipsoids, meshed by evolve, roughened like a scan.
 
+Made anew it is the same, except that a few of its numbers are rounded to the other side in their last digit.
+
 Usage: python3 reference/meshes/make_animal.py build/bin/evolve reference/meshes/animal.ply
 """
 import json
