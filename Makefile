@@ -35,8 +35,8 @@ programs := evolve study check_orders compare_tables
 sources = $(shell find solver experiments tests bench -name '*.cpp' -o -name '*.hpp')
 
 .PHONY: help figures check bench bench-peers deps configure build test test-library test-plots test-vtu test-norms sanitize fuzz crash \
-        crash-check consumer-check format format-check samples tables-check verdicts claims-check independent plots-check report \
-        report-check packages-check packages-check-each findings gallery docs site site-check \
+        crash-check consumer-check format format-check samples samples-check tables-check verdicts claims-check independent \
+        plots-check report report-check packages-check packages-check-each findings gallery groups docs site site-check \
         clean distclean prepare-figures prepare-report $(programs) $(stems) $(stems:%=prepare-%)
 
 help:
@@ -55,6 +55,7 @@ help:
 	@echo "make bench         ms per step and phase at growing sizes, factorisations compared with CHOLMOD and MUMPS"
 	@echo "make bench-peers   a step compared with DOLFINx and PETSc, where they are installed"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
+	@echo "make samples       runs the configurations in reference/examples and compares their ends with what is expected"
 	@echo "make findings      docs/findings/ and the tables of README.md, from the published results"
 	@echo "make gallery       the same, and the pictures in docs/"
 	@echo "make docs | site   API pages of the library (doxygen); all pages for a browser in site/ (python3-markdown)"
@@ -64,7 +65,9 @@ help:
 	@echo "-jN                N jobs at once instead of one per core ($(cores) here)"
 	@echo "BUILD=FOLDER       build there instead of in build/"
 	@echo "CXX=clang++, CMAKE_GENERATOR=Ninja, OPTIONS=-D...  another compiler, build tool, options for CMake"
-	@echo 'LAUNCH="srun -n1"  prefix of the command of each run: make figures -j100 LAUNCH="srun -n1"'
+	@echo 'GROUP=60           runs in groups of about 60 s, each one process; failed runs are tried twice and stop no others'
+	@echo 'LAUNCH="srun -n1"  prefix of the command of each run or group; docs/cluster.md says how with Slurm'
+	@echo "make groups        the groups alone, for a job array -> results/paper/cells/.groups/1, 2, ..."
 	@echo "Interrupt it at any time and repeat the command: finished runs are kept."
 
 # prepare(step, kinds of packages, targets): packages, configuration and executables, as far as a target needs them.
@@ -108,10 +111,15 @@ endef
 report: prepare-report
 	@$(call report_of,paper,figures,report)
 # What docs/ and README.md say of the published results, and the pictures in docs/.
-gallery: findings
+gallery: findings samples
 	@$(PYTHON) plots/gallery.py report/verdicts.json $(BUILD)/evolve.schema.json figures README.md docs
 	@$(BIN)/evolve reference/examples/turing.json
 	@$(PYTHON) plots/own_problem.py build/turing/surfaces.pvd u1 docs/own_problem.png
+	$(PYTHON) plots/examples.py $(BUILD)/samples docs
+	$(PYTHON) plots/study.py $(BUILD)/samples/study/table.json $(BUILD)/samples
+	$(PYTHON) plots/sweep.py $(BUILD)/samples/sweep/table.json --x parameters.b --y parameters.gamma --colour max_u1
+	cp $(BUILD)/samples/study_h.png docs/example_study.png
+	cp $(BUILD)/samples/sweep/sweep.png docs/example_sweep.png
 # The API from the headers' comments, and all pages for a browser. Their tools are in no list: nothing else needs them.
 docs:
 	@if ! command -v doxygen >/dev/null; then echo "missing: doxygen; install it (Debian's name) and try again" >&2; exit 1; fi
@@ -137,8 +145,8 @@ $(stems): %: prepare-%
 	+@$(call run,paper,$@,all)
 
 # All parts of the check run; those that failed are listed at the end. Files they read are traced for the last part.
-check_parts := format-check test-library test-plots test-vtu test-norms crash-check consumer-check samples tables-check verdicts \
-               claims-check independent plots-check report-check packages-check
+check_parts := format-check test-library test-plots test-vtu test-norms crash-check consumer-check samples-check tables-check \
+               verdicts claims-check independent plots-check report-check packages-check
 check: build
 	+@failed=""
 	for part in $(check_parts); do
@@ -151,7 +159,7 @@ check: build
 
 # `check` has built what its parts need; a part that is run on its own builds first.
 ifeq ($(MAKELEVEL),0)
-test-library test-plots test-vtu test-norms crash-check consumer-check samples tables-check verdicts claims-check independent \
+test-library test-plots test-vtu test-norms crash-check consumer-check samples-check tables-check verdicts claims-check independent \
   plots-check report-check packages-check: build
 endif
 
@@ -162,9 +170,9 @@ test: test-library test-plots test-vtu test-norms
 test-library:
 	@$(call run_tests,$(BUILD))
 test-plots:
-	@$(PYTHON) -m unittest discover -q -s tests/packages & packages=$$!
+	@for folder in packages samples; do $(PYTHON) -m unittest discover -q -s tests/$$folder || exit; done & scripts=$$!
 	(cd plots && basename -s .py -a test_*.py | xargs -n5 -P$(local_jobs) $(PYTHON) -m unittest -q)
-	wait $$packages
+	wait $$scripts
 # VTK and ParaView read the snapshots where they are installed; so their files belong to no package of the lists.
 test-vtu:
 	@$(PYTHON) tests/mesh/test_vtu_files.py -q
@@ -210,8 +218,15 @@ format-check:
 	@$(call prepare,deps,format)
 	clang-format --dry-run -Werror $(sources) && echo "$(words $(sources)) files are formatted"
 
+# The configurations of reference/examples, compared with expected.json beside them; a few minutes.
+samples: evolve study
+	@$(PYTHON) tests/samples/run_samples.py --build $(BUILD) --jobs $(local_jobs)
+	$(BIN)/study reference/examples/study_ellipsoid.json --levels 0-3 --output $(BUILD)/samples/study
+	$(BIN)/evolve reference/examples/sweep_schnakenberg.json --set parameters.gamma=10,20,40,80 --set parameters.b=0.6,0.7,0.8,0.9,1 \
+	  --output $(BUILD)/samples/sweep
+
 # The sample command lines in the heads of the experiments must be valid.
-samples:
+samples-check:
 	@for stem in $(stems); do
 	  sed -n "s|^//.*build/bin/\($$stem .*\)|$(BIN)/\1|p" experiments/$$stem.cpp | sed 's/ --output [^ ]*//' | while read -r command; do
 	    $$command --list >/dev/null; echo "accepted: $$command"
@@ -264,9 +279,9 @@ clean:
 distclean: clean
 	rm -rf results figures report site
 
-# run(preset, stems, goal): lists the cells of the stems, then makes the goal of cells.mk. The cells
-# depend on `.executable`, the checksum of their executable: a build that leaves it unchanged outdates nothing.
-define run
+# list_cells(preset, stems): the cells of each stem, and how many are to do. The cells depend on `.executable`, the checksum
+# of their executable: a build that leaves it unchanged outdates nothing.
+define list_cells
 for stem in $(2); do
   folder=results/$(1)/cells/$$stem; mkdir -p $$folder
   sha256sum <$(BIN)/$$stem >$$folder/.executable.new
@@ -280,5 +295,24 @@ done | awk -v start=$$(date +%s) -v progress=results/$(1)/cells/.progress '
   NF { n += 1; s += $$1 }
   END { if (n) printf "== %d runs to do, %d are done; about %.0f s on one core\n", n, NR - n, s
         printf "%d %d %d %g\n", start, NR - n, NR, s >progress }'
-$(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" PYTHON=$(PYTHON) $(3)
 endef
+
+# run(preset, stems, goal): lists the cells of the stems, then makes the goal of cells.mk. With GROUP the cells are run before,
+# in groups, and the goal is made of the stems that are complete.
+make_cells = $(MAKE) -f experiments/harness/cells.mk PRESET=$(1) STEMS="$(2)" PYTHON=$(PYTHON) $(3)
+define run
+$(call list_cells,$(1),$(2))
+$(if $(GROUP),$(call run_groups,$(1),$(2),$(3)),$(call make_cells,$(1),$(2),$(3)))
+endef
+define run_groups
+experiments/harness/cell_groups pack $(1) "$(GROUP)" $(2)
+$(call make_cells,$(1),$(2),groups)
+complete=$$(experiments/harness/cell_groups complete $(1) $(2) | xargs)
+[ -z "$$complete" ] || $(call make_cells,$(1),$$complete,$(3))
+experiments/harness/cell_groups failed $(1) $(2)
+endef
+
+# For a job array: the groups alone (docs/cluster.md).
+groups: prepare-figures
+	@$(call list_cells,paper,$(stems))
+	experiments/harness/cell_groups pack paper "$(or $(GROUP),60)" $(stems)

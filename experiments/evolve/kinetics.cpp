@@ -32,8 +32,9 @@ struct Kinetics {
 std::vector<double> diffusion_in(const JsonReader& reader, std::size_t species) {
   std::vector<double> diffusion;
   for (const json& D : reader.array("diffusion")) {
-    if (!D.is_number() || !(D.get<double>() > 0))
-      throw InputError(reader.where() + ": diffusion: found " + D.dump() + "; expected positive numbers");
+    if (!D.is_number() || !(D.get<double>() >= 0))
+      throw InputError(reader.where() + ": diffusion: found " + D.dump() +
+                       "; expected numbers that are not negative");
     diffusion.push_back(D);
   }
   if (diffusion.size() != species)
@@ -154,9 +155,9 @@ void run_kinetics(const Run& run) {
 
 FormulaKey kinetics_key() {
   const json formula = formula_schema();
-  const json positive = {{"type", "number"}, {"exclusiveMinimum", 0}};
+  const json not_negative = {{"type", "number"}, {"minimum", 0}};
   const json properties = {{"f", {{"type", "array"}, {"items", formula}, {"minItems", 1}}},
-                           {"diffusion", {{"type", "array"}, {"items", positive}, {"minItems", 1}}},
+                           {"diffusion", {{"type", "array"}, {"items", not_negative}, {"minItems", 1}}},
                            {"g", formula},
                            {"alpha", formula},
                            {"beta", formula}};

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The cells, tables and figures of the experiments STEMS at one PRESET, drawn by PYTHON; the Makefile calls it from the
 # project's root when results/PRESET/cells/STEM/.list and .executable are there, and results/PRESET/cells/.progress of
-# cell_done. Goals: tables, figures, all.
+# cell_done. Goals: tables, figures, all; groups runs the cells that cell_groups has packed.
 
 SHELL := bash
 .SHELLFLAGS := -eu -o pipefail -c
@@ -9,7 +9,7 @@ SHELL := bash
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
-# The prefix of every cell's command, such as LAUNCH="srun -n1".
+# The prefix of the command of every cell or group, such as LAUNCH="srun -n1".
 LAUNCH ?=
 BUILD ?= build
 BIN := $(BUILD)/bin
@@ -25,17 +25,22 @@ all_cells := $(shell cd $(cells) && for s in $(STEMS); do sed "s|^\([^ ]*\)|$$s/
 all_cells := $(addprefix $(cells)/,$(all_cells))
 cells_of = $(filter $(cells)/$(1)/%,$(all_cells))
 
-.PHONY: all tables figures
+# Cells packed by cell_groups: each group is one process that LAUNCH starts. One that fails stops no other.
+groups := $(shell ls -v $(cells)/.groups/* 2>/dev/null)
+
+.PHONY: all tables figures groups $(groups)
 all: tables figures
 	@:
 tables: $(all_cells) $(STEMS:%=results/$(PRESET)/%.json)
 figures: tables $(plotted:%=$(figures)/.%.drawn)
+groups: $(groups)
+$(groups):
+	@experiments/harness/cell_groups launch $@ $(LAUNCH)
 
 define stem_rules
 $(call cells_of,$(1)): $(cells)/$(1)/%.json: $(cells)/$(1)/.executable
-	@start=$$$$(date +%s)
-	$$(LAUNCH) $(BIN)/$(1) --preset $(PRESET) --cell $$* --output $$@
-	experiments/harness/cell_done $(cells)/.progress $(1) $$* $$$$(( $$$$(date +%s) - start ))
+	@$$(LAUNCH) $(BIN)/$(1) --preset $(PRESET) --cell $$* --output $$@
+	experiments/harness/cell_done $(cells)/.progress $(1) $$*
 
 results/$(PRESET)/$(1).json results/$(PRESET)/$(1).csv results/$(PRESET)/$(1).tex &: $(call cells_of,$(1))
 	@$(BIN)/$(1) --preset $(PRESET) --collect $(cells)/$(1) --output results/$(PRESET)/$(1).json

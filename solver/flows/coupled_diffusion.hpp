@@ -42,7 +42,7 @@ struct CoupledDiffusionState {
 struct CoupledDiffusionParameters {
   double alpha = 1;                     ///< > 0
   double beta = 1;                      ///< >= 0; the dynamic law has no such term
-  std::vector<double> diffusion = {1};  ///< D_l > 0, one per species
+  std::vector<double> diffusion = {1};  ///< D_l >= 0, one per species
   double reaction_rate = 0;  ///< of f, 1/time, for messages about steps too large for it; 0: not known
 };
 

@@ -29,7 +29,7 @@ class ReactionDiffusion {
   using State = ReactionDiffusionState;
 
   /// x: positions of the nodes at a time; v: their velocities, none: at rest. The space must outlive the
-  /// flow. Throws InputError unless the diffusion coefficients, one for each species, are positive.
+  /// flow. Throws InputError when one of the diffusion coefficients, one for each species, is negative.
   ReactionDiffusion(const SurfaceSpace& space, PointwiseKinetics kinetics,
                     const std::vector<double>& diffusion, NodalMotion x, Velocity v);
 

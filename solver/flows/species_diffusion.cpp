@@ -12,9 +12,9 @@ SpeciesDiffusion::SpeciesDiffusion(const std::vector<double>& diffusion)
     : species_(static_cast<int>(diffusion.size())) {
   for (int l = 0; l < species_; ++l) {
     const double D = diffusion[l];
-    if (!(D > 0) || !std::isfinite(D))
+    if (!(D >= 0) || !std::isfinite(D))
       throw InputError(
-          format("diffusion coefficient %g of species %d: expected a positive number", D, l + 1));
+          format("diffusion coefficient %g of species %d: expected a number that is not negative", D, l + 1));
     auto group = std::find_if(groups_.begin(), groups_.end(),
                               [D](const EqualDiffusion& candidate) { return candidate.D == D; });
     if (group == groups_.end()) group = groups_.insert(group, {D, {}, {}});

@@ -12,7 +12,7 @@ namespace esfem {
 /// factorisation and a solve.
 class SpeciesDiffusion {
  public:
-  /// One coefficient for each species. Throws InputError unless they are positive.
+  /// One coefficient for each species. Throws InputError when one is negative; 0: the species reacts only.
   explicit SpeciesDiffusion(const std::vector<double>& diffusion);
 
   int species() const { return species_; }

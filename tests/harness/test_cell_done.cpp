@@ -21,13 +21,15 @@ struct CellDone : EvolveProgram {
     std::string list;
     for (int i = 1; i <= 100; ++i) list += format("c%d 2.00\n", i);
     write_file((folder / "stem/.list").string(), list);
+    for (int i = 1; i <= 100; ++i)
+      write_file((folder / format("stem/c%d.json", i)).string(), "{\n \"seconds\": 2.6,\n}\n");
     // 10 were done before, 110 in all.
     write_file(progress, format("%ld 10 110 200\n", static_cast<long>(std::time(nullptr)) - 100));
   }
   void done(const std::string& cells, const std::string& how = "") const {
     ASSERT_EQ(run_command("for c in " + cells + "; do " + how +
-                          " " ESFEM_SOURCE_DIR "/experiments/harness/cell_done " + progress +
-                          " stem $c 3 >>" + out + "; done"),
+                          " " ESFEM_SOURCE_DIR "/experiments/harness/cell_done " + progress + " stem $c >>" +
+                          out + "; done"),
               0);
   }
   std::string said() const {
@@ -45,10 +47,18 @@ TEST_F(CellDone, WithoutATerminalOneLineForEvery5Percent) {
   EXPECT_THAT(text, HasSubstr("110 of 110 runs (100%)\n"));
 }
 
+TEST_F(CellDone, OnATerminalEachRunHasItsOwnSeconds) {
+  if (run_command("script -qec true /dev/null >/dev/null 2>&1") != 0) GTEST_SKIP() << "no pseudo-terminal";
+  ASSERT_EQ(run_command("script -qec '" ESFEM_SOURCE_DIR "/experiments/harness/cell_done " + progress +
+                        " stem c7' /dev/null >" + out),
+            0);
+  EXPECT_THAT(said(), HasSubstr("left: stem/c7, 3 s"));
+}
+
 TEST_F(CellDone, SideBySideEachIsCountedOnce) {
   ASSERT_EQ(
       run_command("seq -f c%g 1 100 | xargs -P8 -I{} " ESFEM_SOURCE_DIR "/experiments/harness/cell_done " +
-                  progress + " stem {} 3 >" + out),
+                  progress + " stem {} >" + out),
       0);
   const std::string text = said();
   EXPECT_NEAR(std::count(text.begin(), text.end(), '\n'), 19, 1) << text;

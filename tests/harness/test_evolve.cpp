@@ -276,7 +276,7 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"flow", "willmore"}, {"variant", {{"F", "explicit"}}}}, "extrapolated, implicit"},
       {{{"flow", "willmore"}, {"variant", {{"relaxation", -1}}}}, "relaxation = -1"},
       {{{"flow", "surface_diffusion"}, {"variant", {{"normalise", true}}}},
-       "known are F, project, reinitialise, relaxation, theta"},
+       "known are F, project, reinitialise, relaxation, tangential, theta"},
       {{{"flow", "cahn_hilliard"}, {"parameters", {{"epsilon", 0}}}}, "epsilon = 0"},
       {{{"flow", "cahn_hilliard"}, {"variant", {{"initial", "exact"}}}}, "interpolation, ritz"},
       {{{"flow", "cahn_hilliard"}, {"problem", "sphere"}}, "ellipsoid, mixture, phase_separation"},

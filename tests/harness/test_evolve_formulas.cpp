@@ -151,6 +151,21 @@ TEST_F(EvolveFormulas, HeatOnTheSphereConverges) {
   EXPECT_GT(series.at("u_nodal_L2").back(), 3e-3);
 }
 
+TEST_F(EvolveFormulas, ASpeciesThatDoesNotDiffuseReactsOnly) {
+  const auto last_error = [&](const json& diffusion) {
+    return series_of(on_the_sphere({{"kinetics", {{"f", {"-6*u"}}, {"diffusion", diffusion}}},
+                                    {"tau", 0.005},
+                                    {"steps", 40},
+                                    {"initial", {{"u", "x*y"}}},
+                                    {"exact", {{"u", "x*y*exp(-6*t)"}}}}))
+        .at("u_nodal_L2")
+        .back()
+        .get<double>();
+  };
+  EXPECT_LT(last_error({0}), 2e-3);
+  EXPECT_GT(last_error({1}), 2e-2);  // broken: it diffuses, too
+}
+
 TEST_F(EvolveFormulas, TheManufacturedSolutionOfNick18IsTheBuiltInOne) {
   // f and G of solver/problems/growing_sphere.hpp, r = 1 + sin(pi t)/2, a = exp(-t²), D = alpha = beta = 1.
   const std::string r = "(1+sin(pi*t)/2)", dr = "(pi*cos(pi*t)/2)";
@@ -340,7 +355,8 @@ TEST_F(EvolveFormulas, ErrorsNameTheFormulaAndThePlace) {
               HasSubstr("column 3: unknown name \"w\"; known: x, y, z, t, u, alpha, beta, pi"));
   EXPECT_THAT(refusal(with({{"kinetics", {{"f", {"1-u1", "u2"}}}}})),
               HasSubstr("found 2 formulas f and 1 diffusion coefficients"));
-  EXPECT_THAT(refusal(with({{"kinetics", {{"diffusion", {-1}}}}})), HasSubstr("expected positive numbers"));
+  EXPECT_THAT(refusal(with({{"kinetics", {{"diffusion", {-1}}}}})),
+              HasSubstr("expected numbers that are not negative"));
   EXPECT_THAT(refusal(with({{"kinetics", {{"h", "1"}}}})), HasSubstr("kinetics"));
   EXPECT_THAT(refusal(with({{"kinetics", nullptr}})), HasSubstr("problem kinetics needs the key kinetics"));
   EXPECT_THAT(refusal(with({{"initial", nullptr}})), HasSubstr("u has no initial values"));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // An experiment without a flow: its errors are the formula h^exponent + tau^3 on a grid of four cells. The
-// environment makes a cell fail (FAILING_CELL), run out of memory (MEMORY_CELL) or write a file
-// (WRITING_CELL), and all cells wait (MILLISECONDS) or have run before (EARLIER_SECONDS). Rows say how many
-// threads the process has.
+// environment makes a cell fail (FAILING_CELL), run out of memory (MEMORY_CELL), kill its process group
+// (KILLING_CELL) or write a file (WRITING_CELL), and all cells wait (MILLISECONDS) or have run before
+// (EARLIER_SECONDS). Rows say how many threads the process has.
+#include <signal.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -61,6 +62,7 @@ void run(const Choice& choice, Row& row, const std::string& folder) {
   if (row.cell == environment("FAILING_CELL"))
     throw NumericsError("step 3, t = 0.3: element 7 is degenerate");
   if (row.cell == environment("MEMORY_CELL")) throw std::bad_alloc();
+  if (row.cell == environment("KILLING_CELL")) kill(0, SIGKILL);
   if (row.cell == environment("WRITING_CELL") && !folder.empty()) {
     std::filesystem::create_directories(folder);
     write_file(folder + "/snapshot", "as on the day");
