@@ -152,7 +152,8 @@ helfrich kappa_energy, 1/2 int |kappa|² of the surface itself; for helfrich hel
 multipliers lambda_A and lambda_V; with "exact" the errors u_nodal_L2, u_nodal_H1 and
 u_nodal_H1_semi of each field that has a formula, and u_lifted_L2, .. by quadrature on the exact surface, where it is known (at
 rest, "velocity" or "exact" with a level_set), else u_unlifted_L2, .. on the discrete one; with "x" in it, the trajectories of
-the nodes (of x, y, z at the start, and t), in the exact nodes; for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
+the nodes (of x, y, z at the start, and t), in the exact nodes; for coupled_diffusion min_u, max_u and mass_u, int u, of each
+species (u, or u1, u2, ..); for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
 (u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as field data TimeValue, step, flow and
 configuration (this file; texts are arrays of bytes). If the flow has no nu, then max_H, willmore_energy, and nu and H of
 the snapshots are those of the discrete surface.

@@ -9,6 +9,8 @@
 #include "experiments/harness/warn.hpp"
 #include "solver/analysis/diagnostics.hpp"
 #include "solver/error.hpp"
+#include "solver/flows/coupled_diffusion.hpp"
+#include "solver/flows/reaction_diffusion.hpp"
 #include "solver/problems/exact_evolution.hpp"
 
 namespace esfem {
@@ -61,6 +63,16 @@ void require_area(const Run& run) {
   if (end) throw ExtinctionError(extinction(*end, series));
 }
 
+/// Of each species its smallest and largest nodal value, and its mass 1ᵀM u.
+void record_species(const Field& u, const Field& Mu, Series& series) {
+  const std::vector<std::string> names = concentration_names(static_cast<int>(u.cols()));
+  for (int l = 0; l < u.cols(); ++l) {
+    series["min_" + names[l]].push_back(u.col(l).minCoeff());
+    series["max_" + names[l]].push_back(u.col(l).maxCoeff());
+    series["mass_" + names[l]].push_back(Mu.col(l).sum());
+  }
+}
+
 }  // namespace
 
 Watch::Watch(const Run& run, double start, double end, double tau, int starting_steps, int substeps)
@@ -95,6 +107,14 @@ UniformSteps steps_of(const Run& run, bool has_exact_solution) {
   UniformSteps steps = run.config.grid;
   if (!run.config.start_given && !has_exact_solution) steps.start = parse_start("substeps:16");
   return steps;
+}
+
+void record_more(const Run& run, const ReactionDiffusionState& state) {
+  record_species(state.u, state.Mu, run.recorder.series());
+}
+
+void record_more(const Run& run, const CoupledDiffusionState& state) {
+  record_species(state.u, state.Mu, run.recorder.series());
 }
 
 void record_more(const Run& run, const CahnHilliardState& state) {

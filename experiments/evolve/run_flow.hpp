@@ -25,6 +25,9 @@
 
 namespace esfem {
 
+struct CoupledDiffusionState;
+struct ReactionDiffusionState;
+
 /// What a run says at its end beside its records.
 struct Outcome {
   std::string remark;          ///< for the status: empty, or that nu and H deviate from the surface
@@ -97,6 +100,8 @@ std::vector<double> units_of_controlled(double L) {
 template <class State>
 void record_more(const Run&, const State&) {}
 void record_more(const Run& run, const CahnHilliardState& state);
+void record_more(const Run& run, const ReactionDiffusionState& state);
+void record_more(const Run& run, const CoupledDiffusionState& state);
 void record_more(const Run& run, const WillmoreFlow::State& state);
 
 /// The errors of a state against the exact solution, among the series.

@@ -182,7 +182,7 @@ Mesh generate_mesh(const Surface& surface, double edge_length) {
   if (edge_length > largest * (1 + 1e-12))
     throw InputError(
         format("%s: edge length %g, expected at most %g, the smallest radius of curvature, or a "
-               "mesh that is graded by curvature",
+               "mesh that is graded by curvature (\"grading\")",
                surface.name.c_str(), edge_length, largest));
   return generate(surface, [edge_length](const Vec3&) { return edge_length; }, {25, 0.94, 0.15});
 }

@@ -121,7 +121,7 @@ TEST_F(EvolveFormulas, MeshesAreGradedByCurvature) {
   json configuration = config({{"steps", 0}});
   configuration["surface"] = {{"name", "dumbbell"}};
   configuration["mesh"] = {{"edge_length", 0.2}};
-  EXPECT_THAT(refusal(configuration), HasSubstr("graded by curvature"));
+  EXPECT_THAT(refusal(configuration), HasSubstr("graded by curvature (\"grading\")"));
   configuration["mesh"]["grading"] = 0.5;
   EXPECT_GT(series_of(configuration).at("worst_angle")[0], 20);
   configuration["mesh"]["grading"] = 2;

@@ -350,5 +350,32 @@ TEST_F(OwnProblems, StartFromTheFieldsOfAFile) {
   EXPECT_NEAR(end_of(problem).at("x")[0][0].get<double>(), 1.1, 1e-8);
 }
 
+TEST_F(OwnProblems, TheSeriesHasMassAndExtremesOfEachSpecies) {
+  // u1 = 1 and u2 = 3 without reaction on a sphere of radius R = 1 + t/2: diluted like 1/R², their mass is
+  // kept.
+  const json series = series_of(config({{"flow", "coupled_diffusion"},
+                                        {"problem", "kinetics"},
+                                        {"mesh", {{"subdivisions", 2}}},
+                                        {"tau", 0.01},
+                                        {"steps", 20},
+                                        {"kinetics", {{"f", {"0", "0"}}, {"diffusion", {1, 2}}}},
+                                        {"velocity", {{"normal", "1/2"}}},
+                                        {"initial", {{"u1", "1"}, {"u2", "3"}}}}));
+  const double area = series.at("area")[0];
+  for (const double mass : series.at("mass_u1")) EXPECT_NEAR(mass / area, 1, 1e-12);
+  for (const double mass : series.at("mass_u2")) EXPECT_NEAR(mass / area, 3, 1e-12);
+  EXPECT_NEAR(series.at("max_u1").back(), 1 / (1.1 * 1.1), 1e-3);
+  EXPECT_NEAR(series.at("min_u2").back(), 3 / (1.1 * 1.1), 3e-3);
+}
+
+TEST_F(OwnProblems, ALawOfTheVelocityWithoutGIsRefused) {
+  EXPECT_THAT(refusal(config({{"flow", "coupled_diffusion"},
+                              {"problem", "kinetics"},
+                              {"kinetics", {{"f", {"0"}}, {"diffusion", {1}}}},
+                              {"variant", {{"law", "dynamic"}}},
+                              {"initial", {{"u", "1"}}}})),
+              HasSubstr("expected g in kinetics"));
+}
+
 }  // namespace
 }  // namespace esfem::test_evolve_own_problems
