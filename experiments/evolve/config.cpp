@@ -2,6 +2,7 @@
 #include "experiments/evolve/config.hpp"
 
 #include <algorithm>
+#include <regex>
 
 #include "experiments/evolve/formulas.hpp"
 #include "experiments/evolve/initial.hpp"
@@ -128,6 +129,32 @@ void read_formulas(const JsonReader& reader, EvolveConfig& config) {
       throw InputError(reader.where() + ": " + name + " takes no " + key + "; expected no key " + key);
 }
 
+/// The names in all texts of a JSON value.
+void add_names(const json& value, std::set<std::string>& names) {
+  for (const json& part : value)
+    if (part.is_structured()) add_names(part, names);
+  for (const json& part : value) {
+    if (!part.is_string()) continue;
+    static const std::regex name("[A-Za-z_][A-Za-z_0-9]*");
+    const std::string text = part.get<std::string>();
+    for (std::sregex_iterator found(text.begin(), text.end(), name), end; found != end; ++found)
+      names.insert(found->str());
+  }
+}
+
+/// Refuses a number of one's own that no formula names: it is misspelt.
+void require_named_parameters(const EvolveConfig& config) {
+  std::set<std::string> names;
+  add_names(config.formulas, names);
+  for (const Key& key : config.entry->parameters) names.insert(key.name);
+  std::string others;
+  for (const auto& [name, value] : config.parameters.numbers()) others += (others.empty() ? "" : ", ") + name;
+  for (const auto& [name, value] : config.parameters.numbers())
+    if (names.count(name) == 0)
+      throw InputError(config.source + ": parameters: found " + name +
+                       ", which no formula names; found are " + others);
+}
+
 /// "limits": the bounds beyond which a run is singular.
 void read_limits(const JsonReader& reader, EvolveConfig& config) {
   reader.accept_only({"curvature_size", "radius_ratio", "normal_length"});
@@ -243,6 +270,7 @@ Keys read_keys(const json& given, const std::string& source) {
   config.variant = settings(reader, "variant", entry.variant, entry);
   config.parameters = settings(reader, "parameters", entry.parameters, entry);
   read_formulas(reader, config);
+  if (entry.takes_own_parameters) require_named_parameters(config);
   if (entry.check) entry.check(config, source);
   if (reader.has("degree")) keys.degree = reader.integer_within("degree", 0, 1, max_degree);
   return keys;

@@ -158,7 +158,7 @@ species (u, or u1, u2, ..); for cahn_hilliard mass, int u, and energy, int epsil
 configuration (this file; texts are arrays of bytes). If the flow has no nu, then max_H, willmore_energy, and nu and H of
 the snapshots are those of the discrete surface.
 A run ends with exit code 2, and reports and writes what it has computed, when it meets a singularity, when u grows to
-1000 times its initial size (tumour_growth: or that of its steady state), or when the surface is extinct: its extrapolated
+1000 times its initial size (tumour_growth: or that of its steady state; kinetics: 1e9 times), or when the surface is extinct: its extrapolated
 area is zero within the next step, or its area is below 1e-6 of the initial one, or, under mean curvature flow, it has lived
 for A/(16 pi), the longest possible time for an area A.
 "status" of the series is "ok", the reason why the run ended, or "ok, but ..": then nu and H, which the flow evolves, no

@@ -6,12 +6,14 @@
 namespace esfem {
 
 ReactionDiffusion::ReactionDiffusion(const SurfaceSpace& space, PointwiseKinetics kinetics,
-                                     const std::vector<double>& diffusion, NodalMotion x, Velocity v)
+                                     const std::vector<double>& diffusion, NodalMotion x, Velocity v,
+                                     const RegularityLimits& limits)
     : space_(space),
       kinetics_(std::move(kinetics)),
       diffusion_(diffusion),
       x_(std::move(x)),
       v_(std::move(v)),
+      limits_(limits),
       M_(space.matrix()),
       A_(space.matrix()),
       spd_(space.pattern()) {}
@@ -33,7 +35,7 @@ void ReactionDiffusion::step(const BdfStep<State>& step, State& next) {
   step.known_sum(&State::Mu, Mu_sum_);
   next.u = loads_ - Mu_sum_ / step.tau;
   diffusion_.solve(spd_, step.delta[0] / step.tau, M_, A_, next.u);
-  require_bounded("u", next.x, next.u, {});
+  require_bounded("u", next.x, next.u, limits_);
   M_.multiply(next.u, next.Mu);
 }
 

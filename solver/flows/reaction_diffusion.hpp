@@ -5,6 +5,7 @@
 
 #include "solver/flows/coupled_diffusion.hpp"
 #include "solver/geometry/prescribed_motion.hpp"
+#include "solver/geometry/regularity.hpp"
 
 namespace esfem {
 
@@ -31,10 +32,11 @@ class ReactionDiffusion {
   /// x: positions of the nodes at a time; v: their velocities, none: at rest. The space must outlive the
   /// flow. Throws InputError when one of the diffusion coefficients, one for each species, is negative.
   ReactionDiffusion(const SurfaceSpace& space, PointwiseKinetics kinetics,
-                    const std::vector<double>& diffusion, NodalMotion x, Velocity v);
+                    const std::vector<double>& diffusion, NodalMotion x, Velocity v,
+                    const RegularityLimits& limits = {});
 
   /// One step with BDF of order q: fills all fields of next. Throws SingularityError where elements have
-  /// degenerated or u is not finite.
+  /// degenerated, or u is beyond limits.field_size or not finite.
   void step(const BdfStep<State>& step, State& next);
 
   /// The state with given u at a time, whose nodes and velocities are those of the motion.
@@ -48,6 +50,7 @@ class ReactionDiffusion {
   SpeciesDiffusion diffusion_;
   NodalMotion x_;
   Velocity v_;
+  RegularityLimits limits_;
   SymmetricMatrix M_, A_;
   SpdSolver spd_;
   Field u_tilde_, Mu_sum_, loads_;
