@@ -41,12 +41,11 @@ class Study(unittest.TestCase):
         self.assertEqual([axes.get_title() for axes in figure.axes], ["surface $x$", "solution $u$"])
 
     def test_the_dashed_line_is_the_order_of_the_norm(self):
-        for kind in ("closest", "nodal"):
-            for norm, order in (("L2", 3), ("H1", 2), ("H1_semi", 2)):
-                (_, figure), = draw(study_table(levels=5, kind=kind), norm)
-                self.assertEqual(slopes_of(figure), [[f"$O(h^{{{order}}})$"]] * 2)
-                dashed, = references(figure.axes[0])
-                self.assertTrue(dashed.is_dashed())
+        for kind, norm, order in (("closest", "L2", 3), ("nodal", "L2", 3), ("lifted", "H1", 2), ("nodal", "H1_semi", 2)):
+            (_, figure), = draw(study_table(kind=kind), norm)
+            self.assertEqual(slopes_of(figure), [[f"$O(h^{{{order}}})$"]] * 2)
+            dashed, = references(figure.axes[0])
+            self.assertTrue(dashed.is_dashed())
         (_, figure), = draw(study_table(levels=5, kind="nodal", superconvergent=1), "L2")
         self.assertEqual(sorted(slopes_of(figure)[0]), ["$O(h^{3})$", "$O(h^{4})$"])
 
