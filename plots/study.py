@@ -3,7 +3,8 @@
 
 Usage: python3 plots/study.py FOLDER/table.json [FIGURES]
 Writes study_h.{pdf,png} where there are several meshes, study_tau.{pdf,png} where there are several step sizes. Dashed
-lines show the degree of the elements, or the order of BDF, dotted ones a higher order that the errors follow.
+lines show the expected order: k + 1 in L2 and k in H1 for elements of degree k, q for BDFq; dotted ones a higher order
+that the errors follow.
 """
 import math
 
@@ -25,10 +26,11 @@ def draw(table, norm):
     varied = [variable for variable in ("h", "tau") if len({f"{row[variable]:.6g}" for row in rows if succeeded(row)}) > 1]
     if not varied:
         raise TableError("errors on one mesh with one step size; expected several levels or steps")
+    expected = degree + 1 if norm == "L2" else degree
     # Differences to the finest run are steeper than errors: an order that is not theirs would seem to be followed.
-    faster = (degree + 1,) if full_norm.startswith("closest") else (degree + 1, degree + 2)
+    highest = degree + 1 if full_norm.startswith("closest") else degree + 2
     if "h" in varied:
-        yield "study_h", convergence_figure(rows, quantities, full_norm, "h", degree, faster)
+        yield "study_h", convergence_figure(rows, quantities, full_norm, "h", expected, range(expected + 1, highest + 1))
     if "tau" in varied:
         yield "study_tau", convergence_figure(rows, quantities, full_norm, "tau", bdf)
 

@@ -7,6 +7,7 @@ a number of the rows: max_u1, area, u_unlifted_L2, .. Runs that failed are cross
 """
 import math
 import os
+import re
 import sys
 
 import matplotlib
@@ -72,6 +73,16 @@ def selected(rows, conditions):
     return rows
 
 
+def label_of(name):
+    """The last part of a name, for an entry of an array with the array's: gamma, diffusion.1."""
+    return re.search(r"[^.]+(\.\d+)*$", name)[0]
+
+
+def three_digits(value):
+    """1.80, 12.5, 102, 1.00e+03: all with three significant digits."""
+    return f"{value:#.3g}".rstrip(".")
+
+
 def written(value):
     return f"{value:.6g}" if isinstance(value, (int, float)) else str(value)
 
@@ -110,8 +121,8 @@ def phase_diagram(table, x, y, colour, where=()):
     axes.set_xticks(range(len(columns)), [written(value) for value in columns])
     axes.set_yticks(range(len(lines)), [written(value) for value in lines])
     axes.tick_params(length=0)
-    axes.set_xlabel(x)
-    axes.set_ylabel(y)
+    axes.set_xlabel(label_of(x))
+    axes.set_ylabel(label_of(y))
     axes.set_title(colour if not where else f"{colour}, {', '.join(where)}", pad=4)
     return figure
 
@@ -144,7 +155,7 @@ def _colour_numbers(figure, axes, grid, values, name):
         _square(axes, place, colour)
         if shown and len(values) <= MOST_WRITTEN:
             light = 0.299 * colour[0] + 0.587 * colour[1] + 0.114 * colour[2] > 0.5
-            axes.text(*place, f"{value:.3g}", ha="center", va="center", fontsize=7, color="black" if light else "white")
+            axes.text(*place, three_digits(value), ha="center", va="center", fontsize=7, color="black" if light else "white")
     box = axes.get_position()
     bar = figure.add_axes([box.x1 + 0.1 / figure.get_figwidth(), box.y0, BAR / figure.get_figwidth(), box.height])
     figure.colorbar(colours, cax=bar)

@@ -6,16 +6,16 @@ import unittest
 
 from study import draw
 from table import SCHEMA, TableError
-from testing import data_lines, run_script, slopes_of, texts_of
+from testing import data_lines, references, run_script, slopes_of, texts_of
 
 
-def study_table(levels=4, steps=1, kind="closest", degree=2):
-    """Errors h^3 in L2 and h^2 in H1 of x and u; with `closest` the finest run has none."""
-    rows = []
+def study_table(levels=4, steps=1, kind="closest", degree=2, superconvergent=0):
+    """Errors h^3 in L2 and h^2 in H1 of x and u, or higher powers by `superconvergent`; with `closest` the finest run has none."""
+    rows, in_time = [], 1e-3 if steps > 1 else 0
     for level in range(levels):
         for step in range(steps):
             h, tau = 0.5**level, 0.01 * 0.5**step
-            errors = {q: {f"{kind}_L2": h**(degree + 1) + 1e-3 * (tau / 0.01)**2, f"{kind}_H1": h**degree,
+            errors = {q: {f"{kind}_L2": h**(degree + 1 + superconvergent) + in_time * (tau / 0.01)**2, f"{kind}_H1": h**degree,
                           f"{kind}_H1_semi": h**degree} for q in ("u", "x")}
             rows.append({"cell": f"h{level}_tau{step}", "level": level, "h": h, "nodes": 40 * 4**level, "tau": tau,
                          "steps": 10 * 2**step, "status": "ok", "errors": errors, "labels": {}})
@@ -39,6 +39,15 @@ class Study(unittest.TestCase):
         self.assertEqual([len(line.get_xdata()) for axes in figure.axes for line in data_lines(axes)], [3, 3])
         self.assertIn("closest point", figure.axes[0].get_ylabel())
         self.assertEqual([axes.get_title() for axes in figure.axes], ["surface $x$", "solution $u$"])
+
+    def test_the_dashed_line_is_the_order_of_the_norm(self):
+        for kind, norm, order in (("closest", "L2", 3), ("nodal", "L2", 3), ("lifted", "H1", 2), ("nodal", "H1_semi", 2)):
+            (_, figure), = draw(study_table(kind=kind), norm)
+            self.assertEqual(slopes_of(figure), [[f"$O(h^{{{order}}})$"]] * 2)
+            dashed, = references(figure.axes[0])
+            self.assertTrue(dashed.is_dashed())
+        (_, figure), = draw(study_table(levels=5, kind="nodal", superconvergent=1), "L2")
+        self.assertEqual(sorted(slopes_of(figure)[0]), ["$O(h^{3})$", "$O(h^{4})$"])
 
     def test_slopes_are_those_of_the_configuration(self):
         (_, figure), = draw(study_table(levels=5, degree=3, kind="lifted"), "H1")

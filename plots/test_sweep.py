@@ -40,7 +40,15 @@ class Sweep(unittest.TestCase):
         self.assertEqual([text.get_text() for text in axes.get_yticklabels()], ["dziuk", "bgn"])
         written = {tuple(map(round, text.get_position())): text.get_text() for text in axes.texts}
         self.assertEqual(written[2, 1], "102")
-        self.assertEqual((axes.get_xlabel(), axes.get_ylabel(), axes.get_title()), ("parameters.gamma", "flow", "max_u1"))
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel(), axes.get_title()), ("gamma", "flow", "max_u1"))
+
+    def test_numbers_have_three_digits_and_labels_are_short(self):
+        for value, text in ((1.8, "1.80"), (102.4, "102"), (-0.05, "-0.0500"), (1234, "1.23e+03"), (0, "0.00"), (3e-7, "3.00e-07")):
+            self.assertEqual(sweep.three_digits(value), text)
+        axes = phase_diagram(sweep_table(), "gamma", "flow", "area").axes[0]
+        self.assertEqual({text.get_text() for text in axes.texts}, {"12.5"})
+        for name, label in (("parameters.gamma", "gamma"), ("flow", "flow"), ("kinetics.diffusion.1", "diffusion.1")):
+            self.assertEqual(sweep.label_of(name), label)
 
     def test_colours_follow_the_numbers(self):
         axes = phase_diagram(sweep_table(), "gamma", "flow", "u_nodal_L2").axes[0]
