@@ -79,9 +79,6 @@ void check_kinetics(const EvolveConfig& config, const std::string& source) {
   if ((kinetics.alpha || kinetics.beta) && !kinetics.g)
     throw InputError(source + ": kinetics: found " + (kinetics.alpha ? "alpha" : "beta") +
                      ", of the law of a surface that g drives, without g; expected g, too");
-  if (!kinetics.g && config.variant.is("law", "dynamic"))
-    throw InputError(
-        source + ": variant: found the law of a surface that g drives, without g; expected g in kinetics");
   if (kinetics.beta && config.variant.is("law", "dynamic"))
     throw InputError(source + ": kinetics: found beta, which the dynamic law has not; expected no key beta");
   const bool moves = bool(prescribed_velocity(config, nullptr));

@@ -13,9 +13,6 @@ StopRule::StopRule(const EvolveConfig& config, const SurfaceSpace& space) : conf
 
 namespace {
 
-/// An unstable state is slow in its first steps: only later ones tell that a run has become stationary.
-constexpr int first_step_at_rest = 10;
-
 /// u, or u1, u2, ..
 Field concentrations(const RunRecorder::Surface& surface) {
   Field all(surface.x.rows(), 0);
@@ -45,14 +42,13 @@ double StopRule::speed(const RunRecorder::Surface& surface) const {
 std::string StopRule::reason(const RunRecorder& recorder, int n) const {
   const auto& stop = config_.stop;
   if (n == 0) return "";
-  const bool has_settled = n >= first_step_at_rest;
   const std::string at = format("at t = %g (step %d)", recorder.newest().t, n);
-  if (stop.speed && has_settled)
+  if (stop.speed)
     if (const double found = speed(recorder.newest()); found < *stop.speed)
       return format("stationary: the largest %s in the nodes is %.3g, less than %g, ",
                     has_given_motion(config_) ? "|du/dt|" : "|v|", found, *stop.speed) +
              at;
-  if (stop.energy_rate && has_settled) {
+  if (stop.energy_rate) {
     const std::vector<double>&t = recorder.series().at("t"), &E = recorder.series().at(config_.entry->energy);
     const std::size_t last = t.size() - 1;
     const double rate = (E[last] - E[last - 1]) / (t[last] - t[last - 1]);

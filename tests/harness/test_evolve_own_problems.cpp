@@ -368,13 +368,28 @@ TEST_F(OwnProblems, TheSeriesHasMassAndExtremesOfEachSpecies) {
   EXPECT_NEAR(series.at("min_u2").back(), 3 / (1.1 * 1.1), 3e-3);
 }
 
-TEST_F(OwnProblems, ALawOfTheVelocityWithoutGIsRefused) {
-  EXPECT_THAT(refusal(config({{"flow", "coupled_diffusion"},
-                              {"problem", "kinetics"},
-                              {"kinetics", {{"f", {"0"}}, {"diffusion", {1}}}},
-                              {"variant", {{"law", "dynamic"}}},
-                              {"initial", {{"u", "1"}}}})),
-              HasSubstr("expected g in kinetics"));
+TEST_F(OwnProblems, AParameterThatNoFormulaNamesIsRefused) {
+  const json configuration = config({{"flow", "coupled_diffusion"},
+                                     {"problem", "kinetics"},
+                                     {"kinetics", {{"f", {"k*u"}}, {"diffusion", {1}}}},
+                                     {"parameters", {{"k", 1}, {"kk", 2}}},
+                                     {"initial", {{"u", "1"}}}});
+  EXPECT_THAT(refusal(configuration), HasSubstr("parameters: found kk, which no formula names"));
+}
+
+TEST_F(OwnProblems, KineticsThatBlowUpEndAsSingular) {
+  // u' = u², u = 1/(1 - t), by steps that are too long to follow it.
+  EXPECT_EQ(run(config({{"flow", "coupled_diffusion"},
+                        {"problem", "kinetics"},
+                        {"mesh", {{"subdivisions", 1}}},
+                        {"degree", 1},
+                        {"bdf", 1},
+                        {"tau", 0.05},
+                        {"steps", 60},
+                        {"kinetics", {{"f", {"u^2"}}, {"diffusion", {1}}}},
+                        {"initial", {{"u", "1"}}}})),
+            exit_numerics)
+      << message;
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ int power_of(const std::string& quantity, int time_power) {
   if (quantity == "t") return time_power;
   if (quantity == "v" || quantity == "V") return 1 - time_power;
   if (quantity == "x" || quantity == "h" || quantity == "energy") return 1;
-  if (quantity == "area" || quantity == "mass") return 2;
+  if (quantity == "area" || quantity.rfind("mass", 0) == 0) return 2;
   if (quantity == "volume") return 3;
   if (quantity == "lambda_A") return -2;
   if (quantity == "lambda_V") return -3;
