@@ -4,6 +4,7 @@
 #include "experiments/evolve/config.hpp"
 #include "experiments/evolve/formulas.hpp"
 #include "solver/fe/lagrange.hpp"
+#include "solver/surfaces/named.hpp"
 
 namespace esfem {
 namespace {
@@ -98,6 +99,35 @@ json rule_of(const Entry& entry, bool is_default) {
   return {{"if", is}, {"then", described({{"properties", then}, {"required", required}}, entry.help)}};
 }
 
+/// A named surface with its parameters, or a formula.
+json surface_schema() {
+  const json positive = {{"type", "number"}, {"exclusiveMinimum", 0}}, number = {{"type", "number"}};
+  const json surfaces = named_surface_defaults();
+  json choices = json::array();
+  for (const auto& [name, defaults] : surfaces.items()) {
+    json properties = {{"name", {{"const", name}}}};
+    for (const auto& [parameter, value] : defaults.items()) {
+      properties[parameter] = value.is_array() ? json{{"type", "array"},
+                                                      {"items", positive},
+                                                      {"minItems", value.size()},
+                                                      {"maxItems", value.size()}}
+                                               : positive;
+      properties[parameter]["default"] = value;
+    }
+    choices.push_back(object_of(properties));
+    choices.back()["required"] = json::array({"name"});
+  }
+  const json corner = {{"type", "array"}, {"items", number}, {"minItems", 3}, {"maxItems", 3}};
+  choices.push_back(
+      object_of({{"level_set", described({{"type", "string"}}, "a formula d(x, y, z), d < 0 inside")},
+                 {"box", described({{"type", "array"}, {"items", corner}, {"minItems", 2}, {"maxItems", 2}},
+                                   "two corners of a box around the surface")},
+                 {"parameters", described({{"type", "object"}, {"additionalProperties", number}},
+                                          "numbers that the formula names")}}));
+  choices.back()["required"] = json::array({"level_set", "box"});
+  return {{"description", "exact initial surface and its parameters"}, {"oneOf", choices}};
+}
+
 /// The keys that all flows have.
 json common_properties() {
   const json positive = {{"type", "number"}, {"exclusiveMinimum", 0}}, text = {{"type", "string"}};
@@ -105,11 +135,6 @@ json common_properties() {
     return json{{"type", "integer"}, {"minimum", low}, {"maximum", high}};
   };
   const json number = {{"type", "number"}};
-  const json numbers = {{"type", "object"}, {"additionalProperties", number}};
-  const auto list = [](const json& items, int count) {
-    return json{{"type", "array"}, {"items", items}, {"minItems", count}, {"maxItems", count}};
-  };
-  const json box = list(list(number, 3), 2);
   const json mesh = {
       {"file", described(text, "a mesh file")},
       {"remesh", described(positive, "replaces flat triangles by new ones with edges of about this length")},
@@ -146,15 +171,7 @@ json common_properties() {
                        {"radius_ratio", {{"type", "number"}, {"exclusiveMinimum", -1}}},
                        {"normal_length", {{"type", "number"}, {"exclusiveMinimum", 1}}}};
   return {{"$schema", text},
-          {"surface",
-           {{"type", "object"},
-            {"description", "exact initial surface and its parameters"},
-            {"properties",
-             {{"name", text},
-              {"level_set", described(text, "instead of a name: a formula d(x, y, z), d < 0 inside")},
-              {"box", described(box, "two corners of a box around the surface")},
-              {"parameters", described(numbers, "numbers that the formula names")}}},
-            {"oneOf", {{{"required", {"name"}}}, {{"required", {"level_set", "box"}}}}}}},
+          {"surface", surface_schema()},
           {"mesh", object_of(mesh)},
           {"initial", {{"type", "object"}}},
           {"stop", described(object_of(stop), "ends the run before its last step")},

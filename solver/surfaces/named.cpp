@@ -149,6 +149,15 @@ Surface named_surface(const json& description) {
                    names + ", ...} or {\"level_set\": a formula, \"box\": ..}");
 }
 
+json named_surface_defaults() {
+  json defaults = json::object();
+  for (const Entry& entry : entries()) {
+    defaults[entry.name] = json::object();
+    for (const auto& [name, value] : entry.defaults) defaults[entry.name][name] = value;
+  }
+  return defaults;
+}
+
 std::string named_surfaces_help() {
   std::string text;
   for (const Entry& entry : entries()) {

@@ -13,6 +13,9 @@ namespace esfem {
 /// ones) and for parameters that are no positive numbers or make no smooth surface.
 Surface named_surface(const nlohmann::json& description);
 
+/// {"sphere": {"radius": 1}, ..}: the parameters of each with their defaults.
+nlohmann::json named_surface_defaults();
+
 /// One line per surface: name, parameters, defaults.
 std::string named_surfaces_help();
 

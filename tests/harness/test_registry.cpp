@@ -8,6 +8,7 @@
 
 #include "experiments/evolve/config.hpp"
 #include "solver/error.hpp"
+#include "solver/surfaces/named.hpp"
 
 namespace esfem::test_registry {
 namespace {
@@ -146,6 +147,19 @@ TEST(Registry, FormulasAreReadAndCheckedWhereTheyBelong) {
 }
 
 // `make gallery` writes the list.
+TEST(Registry, TheSchemaKnowsTheParametersOfEachSurface) {
+  const json choices = evolve_schema().at("properties").at("surface").at("oneOf");
+  const json defaults = named_surface_defaults();
+  ASSERT_EQ(choices.size(), defaults.size() + 1);  // and a formula
+  for (const json& choice : choices) {
+    const json& properties = choice.at("properties");
+    EXPECT_EQ(choice.at("additionalProperties"), false);
+    if (!properties.contains("name")) continue;
+    for (const auto& [parameter, value] : defaults.at(properties.at("name").at("const")).items())
+      EXPECT_EQ(properties.at(parameter).at("default"), value) << parameter;
+  }
+}
+
 TEST(Registry, TheDocumentationListsFlowsAndProblems) {
   std::ifstream file(std::string(ESFEM_SOURCE_DIR) + "/docs/flows.md");
   std::stringstream text;
