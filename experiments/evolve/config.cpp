@@ -130,22 +130,21 @@ void read_formulas(const JsonReader& reader, EvolveConfig& config) {
 }
 
 /// The names in all texts of a JSON value.
-void add_names(const json& value, std::set<std::string>& names) {
-  for (const json& part : value)
-    if (part.is_structured()) add_names(part, names);
-  for (const json& part : value) {
+std::set<std::string> names_in(const json& value) {
+  static const std::regex name("[A-Za-z_][A-Za-z_0-9]*");
+  std::set<std::string> names;
+  for (const json& part : value.flatten()) {
     if (!part.is_string()) continue;
-    static const std::regex name("[A-Za-z_][A-Za-z_0-9]*");
-    const std::string text = part.get<std::string>();
+    const std::string text = part;
     for (std::sregex_iterator found(text.begin(), text.end(), name), end; found != end; ++found)
       names.insert(found->str());
   }
+  return names;
 }
 
 /// Refuses a number of one's own that no formula names: it is misspelt.
 void require_named_parameters(const EvolveConfig& config) {
-  std::set<std::string> names;
-  add_names(config.formulas, names);
+  std::set<std::string> names = names_in(config.formulas);
   for (const Key& key : config.entry->parameters) names.insert(key.name);
   std::string others;
   for (const auto& [name, value] : config.parameters.numbers()) others += (others.empty() ? "" : ", ") + name;
