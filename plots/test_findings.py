@@ -106,7 +106,7 @@ class Numbers(unittest.TestCase):
     def filled(self, words):
         return self.numbers.filled("{{" + words + "}}", "a page")
 
-    def test_placeholders(self):
+    def test_what_double_braces_stand_for(self):
         self.assertEqual(self.filled("mcf_sphere a"), "2.95 ± 0.16")
         self.assertEqual(self.filled("mcf_sphere a order"), "2.95")
         self.assertEqual(self.filled("mcf_sphere b .4f"), "0.0769")

@@ -7,6 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -50,6 +52,24 @@ class EvolveProgram : public testing::Test {
     return status;
   }
 
+  /// Runs to the end; returns the nodal values there.
+  nlohmann::json end_of(const nlohmann::json& configuration) {
+    EXPECT_EQ(run(configuration), exit_done) << message;
+    return read_json(nodal);
+  }
+
+  /// Runs to the end; returns the series.
+  nlohmann::json series_of(const nlohmann::json& configuration) {
+    EXPECT_EQ(run(configuration), exit_done) << message;
+    return read_json(series);
+  }
+
+  /// The message with which a configuration is refused.
+  std::string refusal(const nlohmann::json& configuration) {
+    EXPECT_EQ(run(configuration), exit_usage) << message;
+    return message;
+  }
+
   /// Runs a command of the shell; returns its exit code.
   int run_command(const std::string& command) const {
     const pid_t child = fork();
@@ -64,5 +84,14 @@ class EvolveProgram : public testing::Test {
     return WEXITSTATUS(status);
   }
 };
+
+/// The largest difference of the numbers of two arrays, infinite where their sizes differ.
+inline double largest_difference(const nlohmann::json& a, const nlohmann::json& b) {
+  if (a.is_number()) return std::abs(a.get<double>() - b.get<double>());
+  double largest = a.size() == b.size() ? 0 : INFINITY;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    largest = std::max(largest, largest_difference(a[i], b[i]));
+  return largest;
+}
 
 }  // namespace esfem

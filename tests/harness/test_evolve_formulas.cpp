@@ -22,34 +22,12 @@ using testing::AllOf, testing::HasSubstr;
 
 class EvolveFormulas : public EvolveProgram {
  protected:
-  /// Nodal values at the end of a run; null when it fails.
-  json end_of(const json& configuration) {
-    EXPECT_EQ(run(configuration), exit_done) << message;
-    return read_json(nodal);
-  }
-  json series_of(const json& configuration) {
-    EXPECT_EQ(run(configuration), exit_done) << message;
-    return read_json(series);
-  }
   json on_the_sphere(const json& changes) const {
     json result = config({{"flow", "coupled_diffusion"}, {"problem", "kinetics"}});
     result.merge_patch(changes);
     return result;
   }
-
-  std::string refusal(const json& configuration) {
-    EXPECT_EQ(run(configuration), exit_usage) << message;
-    return message;
-  }
 };
-
-double largest_difference(const json& a, const json& b) {
-  if (a.is_number()) return std::abs(a.get<double>() - b.get<double>());
-  double largest = a.size() == b.size() ? 0 : INFINITY;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    largest = std::max(largest, largest_difference(a[i], b[i]));
-  return largest;
-}
 
 Field fields_of(const json& nodal, const std::vector<std::string>& names) {
   Field result(nodal.at("x").size(), 0);

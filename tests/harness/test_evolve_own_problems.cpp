@@ -21,27 +21,7 @@ class OwnProblems : public EvolveProgram {
     result.merge_patch(more);
     return result;
   }
-  json end_of(const json& configuration) {
-    EXPECT_EQ(run(configuration), exit_done) << message;
-    return read_json(nodal);
-  }
-  json series_of(const json& configuration) {
-    end_of(configuration);
-    return read_json(series);
-  }
-  std::string refusal(const json& configuration) {
-    EXPECT_EQ(run(configuration), exit_usage) << message;
-    return message;
-  }
 };
-
-double largest_difference(const json& a, const json& b) {
-  if (a.is_number()) return std::abs(a.get<double>() - b.get<double>());
-  double largest = a.size() == b.size() ? 0 : INFINITY;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    largest = std::max(largest, largest_difference(a[i], b[i]));
-  return largest;
-}
 
 /// A mixture with the mobility 1 + u²/2 + z²/5 on a sphere of radius R = 1 + t/4, whose solution is s = a
 /// z/R, a = 1 + sin(4t)/2. On functions of z/R: w = c~(s), grad w = c grad s, and with F = m c a the first
