@@ -4,8 +4,9 @@
 // medians. Then a whole step of the flow, loads included, on the dumbbell of kll19 §13.2 with 10.5k nodes, as
 // a ratio to the two factorisations and solves in it; and a step of Willmore flow (kll21) with about 10k and
 // 12k nodes, as a ratio to its factorisation and solves and to a naive one, and a step that has a
-// factorisation already. Finally a step of Cahn-Hilliard (bk22 §9.2) on P1 with 10,242 nodes, motion and
-// loads included, as a ratio to a naive one.
+// factorisation already. A step of Cahn-Hilliard (bk22 §9.2) on P1 with 10,242 nodes, motion and loads
+// included, as a ratio to a naive one. Finally (5.1) with tangential motion of minimal deformation rate, as a
+// ratio to (5.1) without, each in a run of 30 steps.
 //
 // bench_factor.cpp then compares factorisations with those of other libraries, and peer_step.cpp writes a
 // step for `make bench-peers`.
@@ -35,6 +36,7 @@
 #include "solver/linalg/spd_solver.hpp"
 #include "solver/mesh/generate.hpp"
 #include "solver/problems/evolving_ellipsoid.hpp"
+#include "solver/time/integrate.hpp"
 
 namespace {
 
@@ -288,6 +290,36 @@ void cahn_hilliard_step(benchmark::State& state) {
   state.counters["naive_over_step"] = phases["naive"] / phases["step"];
 }
 
+/// Steps of BDF2 of a run with tangential motion of minimal deformation rate and of one without; medians.
+void tangential_step(benchmark::State& state, const Surface& surface, double edge_length, double step_size) {
+  Mesh mesh = lagrange_mesh(generate_mesh(surface, edge_length), 2);
+  project_nodes(mesh, surface);
+  const SurfaceSpace space(mesh);
+  MeanCurvatureFlow::Variant sliding;
+  sliding.tangential = MeanCurvatureFlow::Variant::minimal_deformation;
+  Phases phases;
+  const auto run = [&](const MeanCurvatureFlow::Variant& variant, const std::string& phase) {
+    MeanCurvatureFlow flow(space, variant);
+    UniformSteps steps;
+    steps.order = 2;
+    steps.tau = step_size;
+    steps.steps = 30;
+    steps.start = parse_start("substeps:1");
+    phases.start();
+    integrate(flow, steps, {mean_curvature_state_on(surface, mesh.nodes)},
+              [&](int n, const MeanCurvatureFlow::State&) { phases.end(n > 5 ? phase : "start"); });
+  };
+  for (auto _ : state) {
+    const double begin = cpu_ms();
+    run({}, "step");
+    run(sliding, "with_tangential_motion");
+    state.SetIterationTime((cpu_ms() - begin) / 1e3);
+  }
+  state.counters["nodes"] = space.dofs();
+  for (const char* phase : {"step", "with_tangential_motion"}) state.counters[phase] = phases[phase];
+  state.counters["ratio"] = phases["with_tangential_motion"] / phases["step"];
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -324,6 +356,16 @@ int main(int argc, char** argv) {
       ->Unit(benchmark::kMillisecond)
       ->UseManualTime()
       ->Iterations(20);
+  const auto register_tangential = [](const char* name, const Surface& surface, double h, double step_size) {
+    benchmark::RegisterBenchmark(
+        name, [=](benchmark::State& state) { tangential_step(state, surface, h, step_size); })
+        ->Unit(benchmark::kMillisecond)
+        ->UseManualTime()
+        ->Iterations(1);
+  };
+  register_tangential("tangential_motion/dumbbell", dumbbell(), 0.0902, 0.001);
+  register_tangential("tangential_motion/ellipsoid_4_1_1", ellipsoid(4, 1, 1), 0.19, 0.005);
+  register_tangential("tangential_motion/ellipsoid_2_1_1", ellipsoid(2, 1, 1), 0.1365, 0.005);
   esfem::register_factor_benchmarks();
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -33,10 +33,10 @@ std::vector<double> blocked_table(int rows, int terms, const Coefficient& coeffi
 
 /// out[row] = sum of table(row, term) term[term], `height` rows at once so that they stay in registers.
 template <int height>
-const double* sum_block(const double* table, const std::vector<Pack>& terms, Pack* out) {
+const double* sum_block(const double* table, const Pack* terms, int count, Pack* out) {
   Pack sum[height] = {};
-  for (const Pack& term : terms) {
-    for (int row = 0; row < height; ++row) sum[row] += table[row] * term;
+  for (int term = 0; term < count; ++term) {
+    for (int row = 0; row < height; ++row) sum[row] += table[row] * terms[term];
     table += height;
   }
   for (int row = 0; row < height; ++row) out[row] = sum[row];
@@ -44,12 +44,13 @@ const double* sum_block(const double* table, const std::vector<Pack>& terms, Pac
 }
 
 /// out = table * terms for a blocked_table; out has room for the rows that fill the last block up.
-void sum_table(const std::vector<double>& table, const std::vector<Pack>& terms, int rows,
+void sum_table(const std::vector<double>& table, const Pack* terms, int count, int rows,
                std::vector<Pack>& out) {
   const double* next = table.data();
   for (int first = 0; first < rows;) {
     const int height = rows - first > 3 ? 6 : 3;
-    next = height == 6 ? sum_block<6>(next, terms, &out[first]) : sum_block<3>(next, terms, &out[first]);
+    next = height == 6 ? sum_block<6>(next, terms, count, &out[first])
+                       : sum_block<3>(next, terms, count, &out[first]);
     first += height;
   }
 }
@@ -133,7 +134,7 @@ void SurfaceSpace::assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix&
     batches_.require_regular(regular, batch);
 
     sum_stiffness();
-    sum_table(mass_table_, mass_point_, entries_, mass_entry_);
+    sum_table(mass_table_, mass_point_.data(), batches_.points(), entries_, mass_entry_);
     const int* position = &position_[b * entries_ * pack_size];
     for (int k = 0; k < entries_; ++k, position += pack_size) {
       for (int lane = 0; lane < pack_size; ++lane) {
@@ -145,7 +146,8 @@ void SurfaceSpace::assemble(const Field& x, SymmetricMatrix& M, SymmetricMatrix&
 }
 
 void SurfaceSpace::sum_stiffness() const {
-  sum_table(stiffness_table_, stiffness_point_, off_diagonals_, stiffness_entry_);
+  sum_table(stiffness_table_, stiffness_point_.data(), 3 * batches_.points(), off_diagonals_,
+            stiffness_entry_);
   for (int a = 0; a < batches_.nodes(); ++a) stiffness_entry_[off_diagonals_ + a] = Pack{};
   for (int k = 0; k < off_diagonals_; ++k) {
     stiffness_entry_[off_diagonals_ + pairs_[k].first] -= stiffness_entry_[k];
@@ -165,8 +167,8 @@ void SurfaceSpace::add_stiffness(const Batch& batch, SymmetricMatrix& A) const {
   add_entries(batch, stiffness_entry_, A);
 }
 
-void SurfaceSpace::add_mass(const Batch& batch, SymmetricMatrix& M) const {
-  sum_table(mass_table_, mass_point_, entries_, mass_entry_);
+void SurfaceSpace::add_mass(const Batch& batch, const Pack* weights, SymmetricMatrix& M) const {
+  sum_table(mass_table_, weights, batches_.points(), entries_, mass_entry_);
   add_entries(batch, mass_entry_, M);
 }
 

@@ -63,6 +63,11 @@ class SurfaceSpace {
   void assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight,
                               SymmetricMatrix& out) const;
 
+  /// Several of them in one pass: out[l] with weight[l] of weights(const PointData<inputs>&, Pack* weight).
+  template <int inputs, int outputs, class Weights>
+  void assemble_weighted_masses(const Field& x, const Field& u, const Weights& weights,
+                                SymmetricMatrix (&out)[outputs]) const;
+
   /// Integral of weight grad phi_i . grad phi_j, otherwise as the one above.
   template <int inputs, class Weight>
   void assemble_weighted_stiffness(const Field& x, const Field& u, const Weight& weight,
@@ -88,13 +93,11 @@ class SurfaceSpace {
   /// Integral of function(batch, shapes, point) against dxi deta.
   template <class Function>
   double integrate(const Field& x, const Function& function) const;
-  /// Sums weight(point data) over the points of each batch: keep(q, rule's weight, value, point), and then
-  /// add(batch, out).
-  template <int inputs, class Weight, class Keep, class Add>
-  void assemble_weighted(const Field& x, const Field& u, const Weight& weight, const Keep& keep,
-                         const Add& add, SymmetricMatrix& out) const;
-  /// Element mass matrices of a batch from mass_point_, added to M.
-  void add_mass(const Batch& batch, SymmetricMatrix& M) const;
+  /// keep(q, rule's weight, point data, geometry) at the points of each batch, and then add(batch).
+  template <int inputs, class Keep, class Add>
+  void assemble_weighted(const Field& x, const Field& u, const Keep& keep, const Add& add) const;
+  /// Element mass matrices of a batch from the weights of its points, added to M.
+  void add_mass(const Batch& batch, const Pack* weights, SymmetricMatrix& M) const;
   /// The metric terms of a quadrature point, for gradients that are weighted with the weight of the point.
   void set_stiffness_point(int q, const Pack& weight, const BatchPoint& point) const {
     const Pack scale = weight * point.inverse_jacobian;
@@ -118,7 +121,7 @@ class SurfaceSpace {
   std::vector<int> position_;               ///< batches x entries x lanes: where it goes in M.values
   std::vector<double> mass_table_;          ///< see pair_table in the .cpp
   std::vector<double> stiffness_table_;
-  mutable std::vector<Pack> mass_point_;       ///< work space: one integration weight a point
+  mutable std::vector<Pack> mass_point_;       ///< work space: one integration weight a point and matrix
   mutable std::vector<Pack> stiffness_point_;  ///< work space: three metric terms a point
   mutable std::vector<Pack> mass_entry_, stiffness_entry_;
 };

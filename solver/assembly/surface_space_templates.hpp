@@ -74,13 +74,10 @@ void SurfaceSpace::assemble_load(const Field& x, const Field& u, const Function&
   }
 }
 
-template <int inputs, class Weight, class Keep, class Add>
-void SurfaceSpace::assemble_weighted(const Field& x, const Field& u, const Weight& weight, const Keep& keep,
-                                     const Add& add, SymmetricMatrix& out) const {
+template <int inputs, class Keep, class Add>
+void SurfaceSpace::assemble_weighted(const Field& x, const Field& u, const Keep& keep, const Add& add) const {
   require_rows(x, 3);
   require_rows(u, inputs);
-  require_matrix(out);
-  out.values.setZero();
   Batch batch;
   BatchPoint geometry;
   Pack nodal[max_nodes_per_element][inputs + 1];
@@ -90,32 +87,55 @@ void SurfaceSpace::assemble_weighted(const Field& x, const Field& u, const Weigh
     Lanes regular = ~Lanes{};
     for (int q = 0; q < batches_.points(); ++q) {
       regular &= batches_.evaluate(batch, q, geometry);
-      const PointData<inputs> data = point_data<inputs>(batch, q, geometry, DualTangents(geometry), nodal);
-      keep(q, batch.one * batches_.weight(q), weight(data), geometry);
+      keep(q, batch.one * batches_.weight(q),
+           point_data<inputs>(batch, q, geometry, DualTangents(geometry), nodal), geometry);
     }
     batches_.require_regular(regular, batch);
-    add(batch, out);
+    add(batch);
   }
+}
+
+template <int inputs, int outputs, class Weights>
+void SurfaceSpace::assemble_weighted_masses(const Field& x, const Field& u, const Weights& weights,
+                                            SymmetricMatrix (&out)[outputs]) const {
+  for (SymmetricMatrix& matrix : out) {
+    require_matrix(matrix);
+    matrix.values.setZero();
+  }
+  const int points = batches_.points();
+  if (int(mass_point_.size()) < outputs * points) mass_point_.resize(outputs * points);
+  const auto keep = [&](int q, const Pack& rule, const PointData<inputs>& data, const BatchPoint& geometry) {
+    Pack weight[outputs];
+    weights(data, weight);
+    const Pack area = rule * geometry.jacobian;
+    for (int l = 0; l < outputs; ++l) mass_point_[l * points + q] = area * weight[l];
+  };
+  assemble_weighted<inputs>(x, u, keep, [&](const Batch& batch) {
+    for (int l = 0; l < outputs; ++l) add_mass(batch, &mass_point_[l * points], out[l]);
+  });
 }
 
 template <int inputs, class Weight>
 void SurfaceSpace::assemble_weighted_mass(const Field& x, const Field& u, const Weight& weight,
                                           SymmetricMatrix& out) const {
-  const auto keep = [this](int q, const Pack& rule, const Pack& value, const BatchPoint& point) {
-    mass_point_[q] = rule * point.jacobian * value;
+  require_matrix(out);
+  out.values.setZero();
+  const auto keep = [&](int q, const Pack& rule, const PointData<inputs>& data, const BatchPoint& geometry) {
+    mass_point_[q] = rule * geometry.jacobian * weight(data);
   };
-  assemble_weighted<inputs>(
-      x, u, weight, keep, [this](const Batch& batch, SymmetricMatrix& M) { add_mass(batch, M); }, out);
+  assemble_weighted<inputs>(x, u, keep,
+                            [&](const Batch& batch) { add_mass(batch, mass_point_.data(), out); });
 }
 
 template <int inputs, class Weight>
 void SurfaceSpace::assemble_weighted_stiffness(const Field& x, const Field& u, const Weight& weight,
                                                SymmetricMatrix& out) const {
-  const auto keep = [this](int q, const Pack& rule, const Pack& value, const BatchPoint& point) {
-    set_stiffness_point(q, rule * value, point);
+  require_matrix(out);
+  out.values.setZero();
+  const auto keep = [&](int q, const Pack& rule, const PointData<inputs>& data, const BatchPoint& geometry) {
+    set_stiffness_point(q, rule * weight(data), geometry);
   };
-  assemble_weighted<inputs>(
-      x, u, weight, keep, [this](const Batch& batch, SymmetricMatrix& A) { add_stiffness(batch, A); }, out);
+  assemble_weighted<inputs>(x, u, keep, [&](const Batch& batch) { add_stiffness(batch, out); });
 }
 
 }  // namespace esfem

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/bgn_system.hpp"
 
+#include <algorithm>
+
 namespace esfem {
 
 BgnSystem::BgnSystem(const SurfaceSpace& space)
@@ -13,10 +15,8 @@ BgnSystem::BgnSystem(const SurfaceSpace& space)
 
 void BgnSystem::assemble(const SurfaceSpace& space, const Field& x) {
   space.assemble(x, M_, A_);
-  for (int a = 0; a < 3; ++a) {
-    const auto normal = [a](const PointData<0>& p) { return p.normal[a]; };
-    space.assemble_weighted_mass<0>(x, x, normal, N_[a]);
-  }
+  const auto normal = [](const PointData<0>& p, Pack* weight) { std::copy_n(p.normal, 3, weight); };
+  space.assemble_weighted_masses<0>(x, x, normal, N_);
 }
 
 // The unknowns are L H and dx/L, the lines are divided by L³ and L: numbers without units.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "solver/flows/minimal_deformation.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -14,6 +15,10 @@ namespace {
 constexpr double cg_tolerance = 1e-9;
 
 constexpr int most_cg_iterations = 200;
+
+/// Velocities that the guess of kappa is extrapolated from: with four about a third of the iterations less
+/// than with two.
+constexpr int most_differences = 4;
 
 /// The component of the surface that each node belongs to, counted from 0.
 std::vector<int> components(const SparsityPattern& pattern) {
@@ -38,9 +43,8 @@ std::vector<int> components(const SparsityPattern& pattern) {
 
 MinimalDeformation::MinimalDeformation(const SurfaceSpace& space)
     : space_(space),
-      mass_factor_(1 / (space.length() * space.length())),
       component_(components(*space.pattern())),
-      B_{space.matrix(), space.matrix(), space.matrix()},
+      B_W_{space.matrix(), space.matrix(), space.matrix(), space.matrix()},
       grounded_(space.matrix()),
       grounded_solver_(space.pattern()),
       mass_solver_(space.pattern()) {
@@ -58,44 +62,55 @@ void MinimalDeformation::ground(const SymmetricMatrix& A) {
 
 /// out_a = B_a kappa.
 void MinimalDeformation::multiply_B(const Field& kappa, Field& out) const {
-  const SparsityPattern& pattern = *B_[0].pattern;
   out.setZero(kappa.rows(), 3);
+  double* result[3] = {out.col(0).data(), out.col(1).data(), out.col(2).data()};
+  const double *B[3] = {B_W_[0].values.data(), B_W_[1].values.data(), B_W_[2].values.data()},
+               *in = kappa.data();
+  const SparsityPattern& pattern = *B_W_[0].pattern;
   for (int j = 0; j < pattern.size; ++j) {
-    const int diagonal = pattern.column_start[j];
-    for (int a = 0; a < 3; ++a) out(j, a) += B_[a].values[diagonal] * kappa(j);
-    for (int k = diagonal + 1; k < pattern.column_start[j + 1]; ++k) {
+    const int begin = pattern.column_start[j], end = pattern.column_start[j + 1];
+    double sum[3];
+    for (int a = 0; a < 3; ++a) sum[a] = B[a][begin] * in[j];
+    for (int k = begin + 1; k < end; ++k) {
       const int i = pattern.row[k];
       for (int a = 0; a < 3; ++a) {
-        out(i, a) += B_[a].values[k] * kappa(j);
-        out(j, a) += B_[a].values[k] * kappa(i);
+        result[a][i] += B[a][k] * in[j];
+        sum[a] += B[a][k] * in[i];
       }
     }
+    for (int a = 0; a < 3; ++a) result[a][j] += sum[a];
   }
 }
 
 /// out = sum_a B_a v_a.
 void MinimalDeformation::multiply_B_transposed(const Field& v, Field& out) const {
-  const SparsityPattern& pattern = *B_[0].pattern;
   out.setZero(v.rows(), 1);
+  double* result = out.data();
+  const double *B[3] = {B_W_[0].values.data(), B_W_[1].values.data(), B_W_[2].values.data()},
+               *in[3] = {v.col(0).data(), v.col(1).data(), v.col(2).data()};
+  const SparsityPattern& pattern = *B_W_[0].pattern;
   for (int j = 0; j < pattern.size; ++j) {
-    const int diagonal = pattern.column_start[j];
-    for (int a = 0; a < 3; ++a) out(j) += B_[a].values[diagonal] * v(j, a);
-    for (int k = diagonal + 1; k < pattern.column_start[j + 1]; ++k) {
+    const int begin = pattern.column_start[j], end = pattern.column_start[j + 1];
+    double sum = 0;
+    for (int a = 0; a < 3; ++a) sum += B[a][begin] * in[a][j];
+    for (int k = begin + 1; k < end; ++k) {
       const int i = pattern.row[k];
+      double of_j = 0;
       for (int a = 0; a < 3; ++a) {
-        out(i) += B_[a].values[k] * v(j, a);
-        out(j) += B_[a].values[k] * v(i, a);
+        of_j += B[a][k] * in[a][j];
+        sum += B[a][k] * in[a][i];
       }
+      result[i] += of_j;
     }
+    result[j] += sum;
   }
 }
 
 /// out = P r, for one column or more.
-void MinimalDeformation::precondition(const SymmetricMatrix& A, const Field& r, Field& out) {
+void MinimalDeformation::precondition(const Field& r, Field& out) {
   work_ = r;
   mass_solver_.solve(work_);
-  A.multiply(work_, out);
-  out += mass_factor_ * r;
+  B_W_[3].multiply(work_, out);
   mass_solver_.solve(out);
 }
 
@@ -106,22 +121,29 @@ void MinimalDeformation::multiply_S(const Field& p, Field& v_p) {
   multiply_B_transposed(v_p, S_p_);
 }
 
-/// kappa extrapolated from the last two velocities, and C^T kappa = 0.
+/// kappa extrapolated from the last velocities, and C^T kappa = 0.
 void MinimalDeformation::guess() {
-  if (kappa_.size() == 0) kappa_.setZero(space_.dofs(), 1);
-  if (kappa_change_.size() == 0) kappa_change_.setZero(space_.dofs(), 1);
-  old_kappa_ = kappa_;
-  kappa_ += kappa_change_;
+  if (differences_.size() == 0) differences_.setZero(space_.dofs(), most_differences);
+  kappa_ = differences_.leftCols(known_differences_).rowwise().sum();
   kappa_ -= PC_ * CPC_.solve(C_.transpose() * kappa_);
 }
 
+void MinimalDeformation::keep_for_guesses() {
+  work_ = kappa_;
+  for (int order = 0; order < most_differences; ++order) {
+    work_.col(0).swap(differences_.col(order));
+    work_ = differences_.col(order) - work_.col(0);
+  }
+  known_differences_ = std::min(known_differences_ + 1, most_differences);
+}
+
 /// C, P C and (C^T P C)^-1.
-void MinimalDeformation::factorise_constraint(const SymmetricMatrix& A) {
+void MinimalDeformation::factorise_constraint() {
   ones_.setOnes(space_.dofs(), 1);
   multiply_B(ones_, v_p_);
   C_.setZero(space_.dofs(), 3 * fixed_nodes_.size());
   for (int j = 0; j < space_.dofs(); ++j) C_.block<1, 3>(j, 3 * component_[j]) = v_p_.row(j);
-  precondition(A, C_, PC_);
+  precondition(C_, PC_);
   CPC_.compute(C_.transpose() * PC_);
 }
 
@@ -132,16 +154,26 @@ void MinimalDeformation::project() {
   mean_motion_ += of_constraint;
 }
 
-void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const SymmetricMatrix& M,
-                                  const SymmetricMatrix& A, Field& v) {
-  for (int a = 0; a < 3; ++a) {
-    const auto normal = [a](const PointData<3>& p) { return p.u[a]; };
-    space_.assemble_weighted_mass<3>(x, nu_V, normal, B_[a]);
-  }
+/// B_a; A + W for the preconditioner; and the factors.
+void MinimalDeformation::set_matrices(const Field& x, const Field& nu_V, const SymmetricMatrix& M,
+                                      const SymmetricMatrix& A) {
+  const auto weights = [](const PointData<3>& p, Pack* weight) {
+    weight[3] = Pack{};
+    for (int a = 0; a < 3; ++a) {
+      weight[a] = p.u[a];
+      weight[3] += dot(p.grad[a], p.grad[a]);
+    }
+  };
+  space_.assemble_weighted_masses<3>(x, nu_V, weights, B_W_);
+  B_W_[3].values += A.values;
   ground(A);
   mass_solver_.factorise(1, M, 0, A);
-  factorise_constraint(A);
+  factorise_constraint();
+}
 
+void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const SymmetricMatrix& M,
+                                  const SymmetricMatrix& A, Field& v) {
+  set_matrices(x, nu_V, M, A);
   V_ = nu_V.col(3);
   M.multiply(V_, b_);
   b_ = -b_;
@@ -150,7 +182,7 @@ void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const Symme
   r_ = b_ - S_p_;
   mean_motion_.setZero(C_.cols(), 1);
   project();
-  precondition(A, r_, z_);
+  precondition(r_, z_);
   p_ = z_;
   double size = r_.col(0).dot(z_.col(0));
   const auto energy = [&] { return kappa_.col(0).dot(b_.col(0) - r_.col(0)); };  // int |grad v|²
@@ -165,7 +197,7 @@ void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const Symme
     kappa_ += length * p_;
     r_ -= length * S_p_;
     project();
-    precondition(A, r_, z_);
+    precondition(r_, z_);
     const double next_size = r_.col(0).dot(z_.col(0));
     p_ = z_ + next_size / size * p_;
     size = next_size;
@@ -173,20 +205,21 @@ void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const Symme
   if (!std::isfinite(size)) throw NumericsError("velocity of minimal deformation rate is not finite");
   for (int j = 0; j < space_.dofs(); ++j)
     v.row(j) += mean_motion_.middleRows<3>(3 * component_[j]).transpose();
-  kappa_change_ = kappa_ - old_kappa_;
+  keep_for_guesses();
 }
 
 nlohmann::json MinimalDeformation::progress() const {
-  return {{"kappa", packed(kappa_)}, {"kappa_change", packed(kappa_change_)}};
+  return {{"kappa_differences", packed(differences_.leftCols(known_differences_))}};
 }
 
 void MinimalDeformation::resume(const nlohmann::json& saved) {
-  const Field kappa = unpacked(saved.at("kappa")), change = unpacked(saved.at("kappa_change"));
-  for (const Field* field : {&kappa, &change})
-    if (field->size() > 0 && field->rows() != space_.dofs())
-      throw InputError(format("kappa has %td rows, expected %d", field->rows(), space_.dofs()));
-  kappa_ = kappa;
-  kappa_change_ = change;
+  const Field known = unpacked(saved.at("kappa_differences"));
+  if (known.cols() > most_differences || (known.cols() > 0 && known.rows() != space_.dofs()))
+    throw InputError(format("differences of kappa are %td x %td, expected %d x %d at most", known.rows(),
+                            known.cols(), space_.dofs(), most_differences));
+  differences_.setZero(space_.dofs(), most_differences);
+  differences_.leftCols(known.cols()) = known;
+  known_differences_ = static_cast<int>(known.cols());
 }
 
 }  // namespace esfem

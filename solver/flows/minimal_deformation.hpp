@@ -23,10 +23,10 @@ namespace esfem {
 /// v_a = A_g^-1 B_a kappa + c_a, and
 ///   S kappa + sum_a C_a c_a = -M V,   C_a^T kappa = 0,   S = sum_a B_a A_g^-1 B_a,
 /// where S is positive definite: conjugate gradients on the kappa with C_a^T kappa = 0 (Gould, Hribar,
-/// Nocedal, SIAM J. Sci. Comput. 23, 2001). S and M (A + M/L²)^-1 M have the same principal symbol, since
-/// sum_a nu_a² = 1, so that P = M^-1 (A + M/L²) M^-1 leaves the identity and a compact operator: the number
-/// of iterations does not depend on the mesh. It takes three unknowns a node less than a factorisation of the
-/// whole system does.
+/// Nocedal, SIAM J. Sci. Comput. 23, 2001). Without tangential motion kappa = (-Lap + |A|²) V, so that S^-1
+/// is close to P = M^-1 (A + W) M^-1, W_ij = int |grad nu|² phi_i phi_j: both have the principal symbol of
+/// -Lap, since sum_a nu_a² = 1, and P S is the identity and a compact operator. The number of iterations does
+/// not depend on the mesh. It takes three unknowns a node less than a factorisation of the whole system does.
 class MinimalDeformation {
  public:
   /// The space must outlive the object.
@@ -43,30 +43,34 @@ class MinimalDeformation {
   /// Iterations that it took.
   int iterations() const { return iterations_; }
 
-  /// kappa of the last velocity and its change, from which the next iteration starts, for checkpoints.
+  /// kappa of the last velocities, from which the next iteration starts, for checkpoints.
   nlohmann::json progress() const;
-  /// Resumes from there. Throws InputError when a field has not N rows.
+  /// Resumes from there. Throws InputError when the field has not N rows and at most four columns.
   void resume(const nlohmann::json& saved);
 
  private:
+  void set_matrices(const Field& x, const Field& nu_V, const SymmetricMatrix& M, const SymmetricMatrix& A);
   void ground(const SymmetricMatrix& A);
   void multiply_B(const Field& kappa, Field& out) const;
   void multiply_B_transposed(const Field& v, Field& out) const;
   void multiply_S(const Field& p, Field& v_p);
   void guess();
-  void precondition(const SymmetricMatrix& A, const Field& r, Field& out);
-  void factorise_constraint(const SymmetricMatrix& A);
+  void keep_for_guesses();
+  void precondition(const Field& r, Field& out);
+  void factorise_constraint();
   void project();
 
   const SurfaceSpace& space_;
-  double mass_factor_;            ///< 1/L²
   std::vector<int> component_;    ///< of the surface, by node
   std::vector<int> fixed_nodes_;  ///< one in each component
-  SymmetricMatrix B_[3], grounded_;
+  SymmetricMatrix B_W_[4];        ///< B_1, B_2, B_3 and, with A added to it, W
+  SymmetricMatrix grounded_;
   SpdSolver grounded_solver_, mass_solver_;
   Field C_, PC_;  ///< three columns a component
   Eigen::LDLT<Field> CPC_;
-  Field kappa_, kappa_change_, old_kappa_, mean_motion_;
+  Field kappa_, mean_motion_;
+  Field differences_;  ///< of kappa of the last velocities: backward ones of order 0, 1, 2, 3
+  int known_differences_ = 0;
   Field V_, b_, ones_, r_, z_, p_, v_p_, S_p_, work_;
   int iterations_ = 0;
 };

@@ -148,6 +148,26 @@ TEST(SurfaceSpace, WeightedMassAgreesWithTheLoadOfTheProduct) {
   EXPECT_LT((W * u.col(1) - load).cwiseAbs().maxCoeff(), 1e-15);
 }
 
+TEST(SurfaceSpace, WeightedMassesInOnePassAreThoseOfOnePassEach) {
+  const Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, 2, 1);
+  const SurfaceSpace space(mesh);
+  SymmetricMatrix both[2] = {space.matrix(), space.matrix()}, W = space.matrix();
+  const auto weights = [](const PointData<3>& at, Pack* weight) {
+    weight[0] = at.u[0] * at.x[2];
+    weight[1] = at.grad[1][1] + 2.0;
+  };
+  space.assemble_weighted_masses<3>(mesh.nodes, mesh.nodes, weights, both);
+  for (int l = 0; l < 2; ++l) {
+    const auto one = [&](const PointData<3>& at) {
+      Pack weight[2];
+      weights(at, weight);
+      return weight[l];
+    };
+    space.assemble_weighted_mass<3>(mesh.nodes, mesh.nodes, one, W);
+    EXPECT_LT((both[l].values - W.values).cwiseAbs().maxCoeff(), 1e-15) << l;
+  }
+}
+
 TEST(SurfaceSpace, WeightedStiffnessAgreesWithTheLoadOfTheFlux) {
   const Mesh mesh = ellipsoid_mesh({1, 0.8, 0.6}, 2, 1);
   const SurfaceSpace space(mesh);
