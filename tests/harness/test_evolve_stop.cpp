@@ -217,7 +217,7 @@ TEST_F(EvolveStop, OneLineAtTheEnd) {
 /// What the program prints on a terminal.
 TEST_F(EvolveStop, ProgressHasALineOfItsOwnThatIsCleared) {
   const std::string file = path("config.json");
-  write_file(file, config({{"bdf", 3}, {"start", "substeps:16"}, {"mesh", {{"subdivisions", 5}}}}).dump());
+  write_file(file, config({{"bdf", 3}, {"start", "substeps:32"}, {"mesh", {{"subdivisions", 4}}}}).dump());
   int terminal = -1;
   const pid_t process = forkpty(&terminal, nullptr, nullptr, nullptr);
   if (process < 0) GTEST_SKIP() << "no pseudo-terminal can be opened here (is /dev/pts mounted?)";
