@@ -12,7 +12,7 @@ import re
 import sys
 
 from report_content import PAPERS
-from report_data import COUNTED_BASES, counts, place, read_results
+from report_data import COUNTED_BASES, PAPER_KEYS, counts, of_section, place, read_results
 from report_html import small_png
 from table import TableError
 
@@ -21,23 +21,31 @@ PICTURES = ("kll19/fig13_1", "kll19/fig13_3", "kll21/fig7_5", "gallery/willmore_
             "gallery/mcf_angenent_torus", "gallery/mcf_competitors", "gallery/tumour_growth", "pfhub/fig1d", "gallery/tangential_motion", "gallery/helfrich_vesicles",
             "gallery/helfrich_energies")
 WIDTH = 1000  # pixels
-COLUMNS = ("reproduced", "reproduced, but", "cannot be told", "corrected", "not reproduced", "claim not met")
+# Verdicts of the headline, and their heads there: in words that need no explanation.
+COLUMNS = {"reproduced": "reproduced", "reproduced, but": "reproduced, but with a restriction", "cannot be told": "cannot be told from the runs",
+           "corrected": "misprint, corrected", "not reproduced": "not reproduced", "claim not met": "claim not met"}
 
 
 def headline(results):
-    """Statements of each paper by verdict, as a table in Markdown. A column that is empty is left out."""
+    """Statements of each paper by verdict, as a table in Markdown."""
     placed = place(results)
-    rows = []
-    for key, name in [(paper.key, f"{paper.name} ({paper.key})") for paper in PAPERS] + [("beyond", "beyond the papers")]:
-        statements = [statement for (section, _), group in placed.items() if section == key for statement in group]
-        published, others = counts(statements)
+    rows = {}
+    for key in (*PAPER_KEYS, "beyond"):
+        published, others = counts(of_section(placed, key))
         pairs = [others.get(basis, (0, 0)) for basis in COUNTED_BASES]
-        rows.append([name, *(str(published[column] or "–") for column in COLUMNS),
-                     *(f"{hold} of {number}" if number else "–" for hold, number in pairs)])
-    heads = ["statements of", *COLUMNS, *COUNTED_BASES.values()]
-    kept = [i for i in range(len(heads)) if heads[i] not in ("cannot be told", "claim not met") or any(row[i] != "–" for row in rows)]
-    lines = [[line[i] for i in kept] for line in [heads, ["---"] * len(heads), *rows]]
-    return markdown(lines)
+        rows[key] = [*(str(published[column] or "–") for column in COLUMNS), *(f"{hold} of {number}" if number else "–" for hold, number in pairs)]
+    return headline_table(rows)
+
+
+def headline_table(rows):
+    """Of {key of a paper, or "beyond": its numbers}. A column that may be empty, and is, is left out."""
+    names = {paper.key: f"[{paper.key}](docs/findings/{paper.key}.md): {paper.name}. {paper.authors}, {paper.journal}"
+             for paper in PAPERS} | {"beyond": "[beyond the papers](docs/findings/beyond.md)"}
+    heads = ["statements of", *COLUMNS.values(), *COUNTED_BASES.values()]
+    rows = [[names[key], *numbers] for key, numbers in rows.items()]
+    may_be_empty = (COLUMNS["cannot be told"], COLUMNS["claim not met"])
+    kept = [i for i in range(len(heads)) if heads[i] not in may_be_empty or any(row[i] != "–" for row in rows)]
+    return markdown([[line[i] for i in kept] for line in [heads, ["---"] * len(heads), *rows]])
 
 
 def figures_table(results):
@@ -46,14 +54,13 @@ def figures_table(results):
     for paper in PAPERS:
         for figure in paper.figures:
             numbers.setdefault(figure.stem, {}).setdefault(paper.key, {})[figure.number] = None
-    lines = [["figures", "executable", "claims", "all its runs"], ["---"] * 4]
+    lines = [["figures", "executable", "time of all its runs"], ["---"] * 3]
     others = [stem for stem in results.tables if stem not in numbers]
     for stem, of_papers in numbers.items():
         if stem in results.tables:
             names = "; ".join(f"{key} {ranges(list(figures))}" for key, figures in of_papers.items())
-            lines.append([names, f"`{stem}`", f"[{stem}.json](reference/{stem}.json)", duration(seconds(results, [stem]))])
-    lines.append(["[beyond the papers](docs/findings/beyond.md)", ", ".join(f"`{stem}`" for stem in others), "[reference/](reference/README.md)",
-                  duration(seconds(results, others))])
+            lines.append([names, f"`{stem}`", duration(seconds(results, [stem]))])
+    lines.append(["[beyond the papers](docs/findings/beyond.md)", ", ".join(f"`{stem}`" for stem in others), duration(seconds(results, others))])
     return markdown(lines)
 
 

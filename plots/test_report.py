@@ -302,7 +302,8 @@ class Report(unittest.TestCase):
         self.page(claim("a"), claim("b", finding="not reproduced"), claim("c", "finding", "own", "esfem"), claim("d", "theory"),
                   claim("e", "theory", **FAILS), claim("f", "regression", "own", "esfem"))
         table = gallery.headline(self.results)
-        self.assertIn("| Mean curvature flow (kll19) | 1 | – | – | 1 | 1 of 2 | – |", table)
+        self.assertIn("| [kll19](docs/findings/kll19.md): Mean curvature flow. B. Kovács, B. Li, Ch. Lubich, Numer. Math. 143 (2019) "
+                      "| 1 | – | – | 1 | 1 of 2 | – |", table)
         self.assertNotIn("claim not met", table)
         mark = "<!-- headline: written by make gallery -->"
         readme = f"before\n{mark}\nstale\n<!-- end of headline -->\nafter"
