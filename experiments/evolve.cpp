@@ -11,10 +11,11 @@
 //               build/bin/evolve reference/examples/sweep_schnakenberg.json --set parameters.gamma=10,30,100
 //                 --set parameters.b=0.7,0.9,1.1 --output build/sweep
 //
-// Writes the nodal values at the end, a time series and snapshots, as the file says; `evolve --help` explains
-// its keys.
+// Writes the nodal values at the end, a time series and snapshots, as the file says; `evolve --explain keys`
+// explains its keys.
 #include <iostream>
 
+#include "experiments/evolve/help.hpp"
 #include "experiments/evolve/run_configuration.hpp"
 #include "experiments/evolve/sweep.hpp"
 #include "experiments/harness/command_line.hpp"
@@ -41,26 +42,27 @@ int evolve(const std::string& file, const json& origin) {
 
 int main(int argc, char** argv) {
   return guarded_main([&] {
-    std::string file;
+    std::string file, explained;
     int threads = 1;
     bool schema = false;
     std::vector<std::string> sets;
     CellRequest request;
-    CommandLine line(
-        "Evolves a surface: flow, surface or mesh, and method come from a JSON file.\n"
-        "Example: evolve reference/examples/sphere.json\n\n" +
-            evolve_config_help() + "\n" + sweep_help(),
-        "evolve");
+    CommandLine line(evolve_help(), "evolve");
     line.optional_argument("config", file, "the configuration", "CONFIG.json");
+    line.text("--explain", explained, "explain a flow, or what else is listed above", "NAME");
     line.flag("--schema", schema,
               "print the keys of a configuration as JSON Schema; editors complete a configuration that "
               "has \"$schema\": \"schema.json\"");
     line.texts("--set", sets,
-               "a key and its values, such as parameters.gamma=10,20,30; repeatable: see Sweeps",
+               "a key and its values, such as parameters.gamma=10,20,30; repeatable: see --explain sweeps",
                "KEY=VALUES");
     add_kept_cell_options(line, request);
     line.integer("--threads", 1, 1024, threads, "threads that the factorisations may use");
     if (!line.parse(argc, argv)) return static_cast<int>(exit_done);
+    if (!explained.empty()) {
+      std::cout << evolve_explanation(explained);
+      return static_cast<int>(exit_done);
+    }
     if (schema) {
       std::cout << evolve_schema().dump(1) << std::endl;
       return static_cast<int>(exit_done);

@@ -225,7 +225,7 @@ int main(int argc, char** argv) {
     int threads = 1;
     CellRequest request;
     CommandLine line(help + ("\n" + kept_cells_help("study", "--levels 0-3 --steps 0-3")), "study");
-    line.argument("config", file, "the configuration, see evolve --help", "CONFIG.json");
+    line.argument("config", file, "the configuration, see evolve --explain keys", "CONFIG.json");
     line.parsed(
         "--levels", [&](const std::string& text) { levels = parse_list(text, "--levels"); },
         "how often the edge length is halved (default: 0-3)", "LIST");

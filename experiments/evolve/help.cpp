@@ -1,10 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "experiments/evolve/help.hpp"
+
+#include <algorithm>
+#include <sstream>
+
 #include "experiments/evolve/config.hpp"
 #include "experiments/evolve/formulas.hpp"
+#include "experiments/evolve/sweep.hpp"
+#include "solver/error.hpp"
 #include "solver/surfaces/named.hpp"
 
 namespace esfem {
 namespace {
+
+/// The words in lines of at most 110 characters; the first continues a line of `used` characters, the others
+/// are indented.
+std::string wrapped(const std::string& words, std::size_t used, std::size_t indent) {
+  std::istringstream stream(words);
+  std::string text;
+  for (std::string word; stream >> word; used += word.size() + 1) {
+    if (used + word.size() > 110 && !text.empty()) {
+      text += "\n" + std::string(indent, ' ');
+      used = indent;
+    } else if (!text.empty()) {
+      text += " ";
+    }
+    text += word;
+  }
+  return text + "\n";
+}
 
 /// "ritz" | "interpolation", or true | false | "coefficients": the default comes first
 std::string values_of(const Key& key) {
@@ -28,7 +52,7 @@ std::string lines_of(const char* object, const std::vector<Key>& keys) {
     line.resize(21, ' ');
     line += "\"" + key.name + "\": " + values_of(key) + unit_of(key.length_power);
     line.resize(std::max<std::size_t>(line.size() + 2, 52), ' ');
-    text += line + key.help + "\n";
+    text += line + wrapped(key.help, line.size(), 52);
   }
   return text;
 }
@@ -39,7 +63,7 @@ std::string lines_of(const std::vector<FormulaKey>& keys) {
     std::string line = "      \"" + key.name + "\"";
     line.resize(21, ' ');
     text += line + key.example + (key.is_required ? ", needed" : "") + "\n" + std::string(21, ' ') +
-            key.help + "\n";
+            wrapped(key.help, 21, 21);
   }
   return text;
 }
@@ -58,9 +82,9 @@ std::string starts_of(const Entry& entry) {
 }
 
 std::string help_of(const Entry& entry) {
-  std::string text = "  \"" + entry.flow + "\"";
+  std::string text = "\"flow\": \"" + entry.flow + "\"";
   if (!entry.problem.empty()) text += ", \"problem\": \"" + entry.problem + "\"";
-  text += ": " + entry.help + "\n";
+  text += "\n      " + wrapped(entry.help, 6, 6);
   if (!entry.fields.empty()) text += "      nodal fields   " + entry.fields + "\n";
   if (!entry.energy.empty()) text += "      energy         \"" + entry.energy + "\" of the series\n";
   if (entry.highest_order == 1)
@@ -73,13 +97,10 @@ std::string help_of(const Entry& entry) {
          lines_of(entry.formulas) + starts_of(entry);
 }
 
-}  // namespace
-
-std::string evolve_config_help() {
-  std::string flows;
-  for (const Entry& entry : entries()) flows += help_of(entry);
-  return R"(CONFIG.json (keys without a default must be given; unknown keys are errors; evolve --schema prints them for editors):
-  {"flow": "mean_curvature", "problem": .., "variant": {..}, "parameters": {..},   see Flows
+const char* const keys_help =
+    R"(Keys without a default must be given; unknown keys are errors. "flow", "problem", "variant" and "parameters" are
+explained with each flow.
+  {"flow": "mean_curvature", "problem": .., "variant": {..}, "parameters": {..},
    "surface": {"name": "sphere", "radius": 2},  exact initial surface; optional with a mesh file
    "mesh": {"file": "a.msh",                  .msh, .off, .obj, .ply, .stl, .vtu of evolve (plots/convert_mesh.py converts other
                                               files): closed, of one or several components; seams, polygons and
@@ -95,7 +116,7 @@ std::string evolve_config_help() {
             "grading": 0.5}                   edges at most this times the radius of curvature; default: edges of one length
          | {"subdivisions": 4},               of an icosahedron, for sphere and ellipsoid
    "initial": {"file": "end.json",            instead of mesh: surface, nodal values and time of an earlier run, from its nodal
-                                              output, from a snapshot (.vtu), or from a mesh file with nodal values; see below
+                                              output, from a snapshot (.vtu), or from a mesh file with nodal values; see initial
                "time": 0},                    only for files that do not say it
    "degree": 2,                               1..4; default for a file without "surface": the degree of its elements, which is
                                               1 for flat triangles without "curve": on these nu and H do not converge with
@@ -106,7 +127,7 @@ std::string evolve_config_help() {
                                               surface
    "stop": {"speed": 1e-6,                    ends the run: stationary, the largest |v| in the nodes is below this (length/time
                                               of your data; cahn_hilliard: |du/dt|),
-            "energy_rate": 1e-6,              stationary: |dE/dt| of the flow's energy is below this, see Flows,
+            "energy_rate": 1e-6,              stationary: |dE/dt| of the flow's energy is below this,
             "area": 0.1,                      area below 0.1 times that at the start; values above 1: area above,
             "seconds": 3600},                 wall-clock time of this command; default: none of these
    "adaptive": {"end_time": 4,                instead of tau, steps and start: BDF 1 or 2 (bdf, default 2) with steps that
@@ -127,62 +148,159 @@ std::string evolve_config_help() {
                                               with tau and a file
               "series": "series.json",        written at the end; "series.csv": a line per step, written at once
               "vtu": "run.pvd",               snapshots for ParaView: run.pvd and run_0000.vtu, .., at start and end,
-              "checkpoint": "run.checkpoint", the same command resumes from it; see below
+              "checkpoint": "run.checkpoint", the same command resumes from it; see checkpoint
               "every": 10,                    at every 10th step (default 0: none of these)
               "every_time": 0.1,              at the first step at or after each multiple of this; tau stays as it is
               "times": [0.1, 0.25]}}          and at the first step at or after each of these times
-Flows and the defaults of their keys; the first problem of a flow is its default:
-)" + flows +
-         R"(Units: values that you give have the units of your data. Defaults and tolerances are relative to L, the power of ten
-nearest to sqrt(area/(4 pi)) of the initial surface: L = 1 for sizes of 0.32 to 3.2. Times have the unit T = L^2, or another
-power where the flow says so (phase_separation: mobility 1, epsilon a length). A disturbance consists of waves with wave
-numbers up to 4/L and phases relative to the origin (on a mesh without "surface": to its centroid); in phase_separation its
-mean is 0.
-Surfaces and their defaults:
-)" + named_surfaces_help() +
-         formulas_help() +
-         R"(Output: nodal has t, x, v and the nodal fields of the flow (see Flows) at the last step, one row per node; the nodes of the
-mesh file come first, in its order. elements has one row per element: its nodes, counted from 0 (corners, then the nodes of
-the edges 01, 12, 20, then inner ones). node_numbers are the numbers of the nodes in the file, if these are not 1, 2, ..
-A run starts from those nodal values of its mesh file ($NodeData of .msh, point data of .vtu, real properties of the vertices
-of .ply: H, or nu_x, nu_y, nu_z) that are listed with its flow ("starts from"), and reports this. t starts at 0, and defaults are relative to the length of this surface: to continue with
-the parameters of an earlier run, give them. The series has, per step, t, area, volume, willmore_energy (1/2 int H²), max_H,
-h, worst_angle (degrees), worst_radius_ratio; if the flow has nu, also min_nu and max_nu; for willmore, surface_diffusion and
-helfrich kappa_energy, 1/2 int |kappa|² of the surface itself; for helfrich helfrich_energy, 1/2 int (H - H_0)², and the
-multipliers lambda_A and lambda_V; with "exact" the errors u_nodal_L2, u_nodal_H1 and
-u_nodal_H1_semi of each field that has a formula, and u_lifted_L2, .. by quadrature on the exact surface, where it is known (at
-rest, "velocity" or "exact" with a level_set), else u_unlifted_L2, .. on the discrete one; with "x" in it, the trajectories of
-the nodes (of x, y, z at the start, and t), in the exact nodes; for coupled_diffusion min_u, max_u and mass_u, int u, of each
-species (u, or u1, u2, ..); for cahn_hilliard mass, int u, and energy, int epsilon/2 |grad u|² +
-(u² - 1)²/(4 epsilon). Snapshots have v, nu, H, and kappa = M^-1 A x, and as field data TimeValue, step, flow and
-configuration (this file; texts are arrays of bytes). If the flow has no nu, then max_H, willmore_energy, and nu and H of
-the snapshots are those of the discrete surface.
-A run ends with exit code 2, and reports and writes what it has computed, when it meets a singularity, when u grows to
-1000 times its initial size (tumour_growth: or that of its steady state; kinetics: 1e9 times), or when the surface is extinct: its extrapolated
-area is zero within the next step, or its area is below 1e-6 of the initial one, or, under mean curvature flow, it has lived
-for A/(16 pi), the longest possible time for an area A.
-"status" of the series is "ok", the reason why the run ended, or "ok, but ..": then nu and H, which the flow evolves, no
-longer agree with the surface, for example because the mesh does not resolve the curvature; or, with bgn, nodes have slid
-off edges. nu and H are compared with the surface at the start, at the end and every 50 steps; they do not agree if H nu and
-kappa, smoothed over an edge length, differ by more than 25% in L2, or the rates of area int H nu . v and int kappa . v by
-more than 25% of ||H nu|| ||v||, or willmore_energy and kappa_energy by more than 25% (degree 1: 50%).
-Initial: nodal has also degree, flow, and history: the states of the last bdf steps, the nodes at the start, and what the flow
-keeps from step to step. A run from it with the same flow, surface, variant, parameters, quadrature, tau and bdf goes on bit for
-bit as if it had not ended ("surface" and "bdf" may be left out). Otherwise, and from other files, it starts from the nodal
-values listed with the flow ("starts from") with new starting steps, and says why; a file without them is an error, and limits
-and defaults are then relative to its surface.
-Stop: the run ends with exit code 0, and "status" is "stationary: ..", "area: .." or "seconds: ..". A run that resumes from its
-checkpoint takes a step before it is judged again.
-Before the first step, missing folders of output files are created and the files are opened for writing as a test.
-Checkpoint: the file is written every 30 seconds, when the run is stopped, and at its end, and is kept. A run that finds it
-resumes from it, bit for bit as if it had not been stopped; more steps or a later end_time thus prolong a finished run (with
+)";
+
+const char* const units_help =
+    R"(Values that you give have the units of your data. Defaults and tolerances are relative to L, the power of ten nearest
+to sqrt(area/(4 pi)) of the initial surface: L = 1 for sizes of 0.32 to 3.2. Times have the unit T = L^2, or another
+power where the flow says so (phase_separation: mobility 1, epsilon a length).
+A disturbance consists of waves with wave numbers up to 4/L and phases relative to the origin (on a mesh without
+"surface": to its centroid); in phase_separation its mean is 0.
+)";
+
+const char* const output_help =
+    R"("nodal" has t, x, v and the nodal fields of the flow at the last step, one row per node; the nodes of the mesh file come
+first, in its order. elements has one row per element: its nodes, counted from 0 (corners, then the nodes of the edges
+01, 12, 20, then inner ones). node_numbers are the numbers of the nodes in the file, if these are not 1, 2, ..
+
+"series" has, per step,
+  t, area, volume, willmore_energy (1/2 int H²), max_H, h, worst_angle (degrees), worst_radius_ratio;
+  flows with nu: min_nu, max_nu;
+  willmore, surface_diffusion, helfrich: kappa_energy, 1/2 int |kappa|² of the surface itself;
+  helfrich: helfrich_energy, 1/2 int (H - H_0)², and the multipliers lambda_A and lambda_V;
+  coupled_diffusion: min_u, max_u and mass_u, int u, of each species (u, or u1, u2, ..);
+  cahn_hilliard: mass, int u, and energy, int epsilon/2 |grad u|² + (u² - 1)²/(4 epsilon);
+  with "exact": u_nodal_L2, u_nodal_H1 and u_nodal_H1_semi of each field that has a formula, and by quadrature
+    u_lifted_L2, .. on the exact surface where it is known (at rest, "velocity" or "exact" with a level_set), else
+    u_unlifted_L2, .. on the discrete one. With "x" in it, the trajectories of the nodes (of x, y, z at the start, and
+    t), errors are those in the exact nodes.
+
+Snapshots have v, nu, H, and kappa = M^-1 A x, and as field data TimeValue, step, flow and configuration (this file;
+texts are arrays of bytes). If the flow has no nu, then max_H, willmore_energy, and nu and H of the snapshots are those
+of the discrete surface.
+
+Before the first step, missing folders of output files are created and the files are opened for writing as a test. At
+its end a run says on standard error how many steps were taken, how long that took, and which files were written.
+)";
+
+const char* const end_help =
+    R"(A run that meets a singularity ends with exit code 2, and reports and writes what it has computed. So it does
+  when u grows to 1000 times its initial size (tumour_growth: or that of its steady state; kinetics: 1e9 times),
+  when the surface is extinct: its extrapolated area is zero within the next step, or its area is below 1e-6 of the
+  initial one, or, under mean curvature flow, it has lived for A/(16 pi), the longest possible time for an area A.
+
+"stop" ends it with exit code 0, and "status" of the series is "stationary: ..", "area: .." or "seconds: ..". A run that
+resumes from its checkpoint takes a step before it is judged again.
+
+Else "status" is "ok", the reason why the run ended, or "ok, but ..": then nu and H, which the flow evolves, no longer
+agree with the surface, for example because the mesh does not resolve the curvature; or, with bgn, nodes have slid off
+edges. nu and H are compared with the surface at the start, at the end and every 50 steps. They do not agree if H nu and
+kappa, smoothed over an edge length, differ by more than 25% in L2, or the rates of area int H nu . v and int kappa . v
+by more than 25% of ||H nu|| ||v||, or willmore_energy and kappa_energy by more than 25% (degree 1: 50%).
+)";
+
+const char* const initial_help =
+    R"(From a mesh file a run starts from those of its nodal values that are listed with its flow ("starts from"): $NodeData of
+.msh, point data of .vtu, real properties of the vertices of .ply (H, or nu_x, nu_y, nu_z); it reports this. t starts at
+0, and defaults are relative to the length of this surface: to continue with the parameters of an earlier run, give them.
+
+From "initial", the nodal output of a run: this has also degree, flow, and history: the states of the last bdf steps, the
+nodes at the start, and what the flow keeps from step to step. A run from it with the same flow, surface, variant,
+parameters, quadrature, tau and bdf goes on bit for bit as if it had not ended ("surface" and "bdf" may be left out).
+Otherwise, and from other files, it starts from the nodal values listed with the flow with new starting steps, and says
+why; a file without them is an error, and limits and defaults are then relative to its surface.
+)";
+
+const char* const checkpoint_help =
+    R"(The file is written every 30 seconds, when the run is stopped, and at its end, and is kept. A run that finds it resumes
+from it, bit for bit as if it had not been stopped; more steps or a later end_time thus prolong a finished run (with
 adaptive steps the last ones, which led to the earlier end, are repeated). output may change: every and times apply from
 there on, and a vtu of another name begins there. A file that does not fit (another tau, mesh, variant or build of the
-program) or is damaged is an error before the first step, and is left unchanged. The checkpoint from which a run has resumed
-is kept as run.checkpoint.previous.
+program) or is damaged is an error before the first step, and is left unchanged. The checkpoint from which a run has
+resumed is kept as run.checkpoint.previous.
+
 SIGINT and SIGTERM stop a run after the step in progress: it writes its checkpoint and what it has computed, with "status":
-"stopped by signal SIGINT at t = ..", says how to go on, and ends with exit code 130 or 143. A second signal ends it at once.
-At its end a run says on standard error how many steps were taken, how long that took, and which files were written.)";
+"stopped by signal SIGINT at t = ..", says how to go on, and ends with exit code 130 or 143. A second signal ends it at
+once.
+)";
+
+/// What evolve --explain NAME prints. The title is its line in --help; a flow, which has none, is listed
+/// there with its problems.
+struct Subject {
+  std::string name, title, text;
+};
+
+std::vector<Subject> subjects() {
+  std::vector<Subject> all = {{"keys", "every key of a configuration, with its default", keys_help}};
+  for (const Entry& entry : entries()) {
+    if (all.back().name != entry.flow) all.push_back({entry.flow, "", ""});
+    all.back().text += help_of(entry);
+  }
+  all.push_back({"units", "of numbers, defaults and tolerances", units_help});
+  all.push_back({"surfaces", "those with a name, and their parameters", named_surfaces_help()});
+  all.push_back({"formulas", "what they may contain", formulas_help()});
+  all.push_back({"output", "what the files contain", output_help});
+  all.push_back({"end", "when a run ends, and its status", end_help});
+  all.push_back({"initial", "starting from a file, going on from an earlier run", initial_help});
+  all.push_back({"checkpoint", "stopping and resuming", checkpoint_help});
+  all.push_back({"sweeps", "many runs: --set, --list, --cell, --collect", sweep_help()});
+  return all;
+}
+
+/// The flows, each with its problems, a line of help each.
+std::string list_of_flows() {
+  std::string text;
+  for (const Entry& entry : entries()) {
+    const bool has_default = &entry == &entries().front() || (&entry - 1)->flow != entry.flow;
+    std::string line = "  " + (has_default ? entry.flow : "");
+    if (!entry.problem.empty()) {
+      if (has_default) text += line + ", by \"problem\":\n";
+      line = "    " + entry.problem;
+    }
+    line.resize(std::max<std::size_t>(line.size() + 2, 30), ' ');
+    text += line + wrapped(entry.help, line.size(), 30);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string evolve_help() {
+  std::string titles;
+  for (const Subject& subject : subjects()) {
+    if (subject.title.empty()) continue;
+    std::string line = "  " + subject.name;
+    line.resize(30, ' ');
+    titles += line + subject.title + "\n";
+  }
+  return std::string(R"(Evolves a surface: flow, surface or mesh, and method come from a JSON file, such as
+)") + evolve_example +
+         R"(
+
+Flows; the first problem of a flow is its default:
+)" + list_of_flows() +
+         R"(
+evolve --explain NAME, where NAME is a flow, explains its keys, and with another NAME
+)" + titles +
+         R"(  all                         all of this
+More configurations: reference/examples, such as evolve reference/examples/sphere.json; docs/own_problems.md.
+README.md names the papers kll19, nick18, kll21 and bk22.
+)";
+}
+
+std::string evolve_explanation(const std::string& name) {
+  std::string text, known;
+  for (const Subject& subject : subjects()) {
+    if (name == subject.name) return subject.text;
+    if (name == "all") text += "== " + subject.name + "\n" + subject.text + "\n";
+    known += subject.name + ", ";
+  }
+  if (text.empty()) throw InputError("--explain: found " + name + ", expected one of " + known + "all");
+  return text;
 }
 
 }  // namespace esfem

@@ -186,7 +186,7 @@ void sweep(const json& configuration, const std::string& source, const std::vect
 }
 
 std::string sweep_help() {
-  return "Sweeps: evolve CONFIG.json --set parameters.gamma=10,20,30 --set tau=0.01,0.005 --output FOLDER "
+  return "evolve CONFIG.json --set parameters.gamma=10,20,30 --set tau=0.01,0.005 --output FOLDER "
          "runs all\n"
          "combinations of these values. A dotted path names a key of the configuration "
          "(kinetics.diffusion.1: the second\n"

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "experiments/evolve/config.hpp"
+#include "experiments/evolve/help.hpp"
 #include "solver/error.hpp"
 #include "solver/surfaces/named.hpp"
 
@@ -14,7 +15,7 @@ namespace esfem::test_registry {
 namespace {
 
 using nlohmann::json;
-using testing::AllOf, testing::Contains, testing::HasSubstr;
+using testing::AllOf, testing::Contains, testing::HasSubstr, testing::Not;
 
 /// The message of the error that a configuration of these flow, variant and parameters meets; "" without one.
 std::string refusal(const json& keys) {
@@ -97,7 +98,7 @@ TEST(Registry, EveryKeyIsReadAndCheckedWhereItBelongs) {
 }
 
 TEST(Registry, HelpAndSchemaKnowEveryKey) {
-  const std::string help = evolve_config_help();
+  const std::string help = evolve_explanation("all");
   const json schema = evolve_schema();
   for (const Entry& entry : entries()) {
     EXPECT_THAT(help, HasSubstr("\"" + entry.flow + "\""));
@@ -118,8 +119,36 @@ TEST(Registry, HelpAndSchemaKnowEveryKey) {
   EXPECT_EQ(refusal({{"flow", "dziuk"}, {"$schema", "evolve.schema.json"}}), "");
 }
 
+TEST(Registry, HelpIsOneScreenWithAConfigurationThatIsAccepted) {
+  const std::string help = evolve_help();
+  EXPECT_LE(std::count(help.begin(), help.end(), '\n'), 60);
+  for (const Entry& entry : entries())
+    EXPECT_THAT(help, AllOf(HasSubstr(entry.flow), HasSubstr(entry.problem)));
+  EXPECT_THAT(help, HasSubstr(evolve_example));
+  json example = json::parse(evolve_example);
+  example["mesh"] = {{"subdivisions", 1}};
+  EXPECT_NO_THROW(evolve_config(example, "help"));
+}
+
+TEST(Registry, EachNameInHelpIsExplainedAndOthersAreRefused) {
+  const std::string all = evolve_explanation("all");
+  for (const Entry& entry : entries()) EXPECT_THAT(evolve_explanation(entry.flow), HasSubstr(entry.problem));
+  EXPECT_THAT(evolve_explanation("willmore"), AllOf(HasSubstr("relaxation"), Not(HasSubstr("bgn"))));
+  for (const char* name :
+       {"keys", "units", "surfaces", "formulas", "output", "end", "initial", "checkpoint", "sweeps"}) {
+    EXPECT_THAT(evolve_help(), HasSubstr(std::string("  ") + name + "  "));
+    EXPECT_THAT(all, HasSubstr(evolve_explanation(name))) << name;
+  }
+  try {
+    evolve_explanation("wilmore");
+    FAIL() << "an unknown name was accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("found wilmore"), HasSubstr("willmore, surface_diffusion")));
+  }
+}
+
 TEST(Registry, FormulasAreReadAndCheckedWhereTheyBelong) {
-  const std::string help = evolve_config_help();
+  const std::string help = evolve_explanation("all");
   std::set<std::string> all;
   for (const Entry& entry : entries())
     for (const FormulaKey& key : entry.formulas) all.insert(key.name);
