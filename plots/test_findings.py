@@ -91,6 +91,11 @@ class Pages(unittest.TestCase):
                     heads += re.findall(r'<a id="([^"]*)"', read(path))
                     self.assertIn(anchor, heads, f"{page}: {target}")
 
+    def test_lists_are_set_off_by_a_blank_line(self):
+        for page in pages():  # else python3-markdown, which makes the site, reads them as a part of the paragraph
+            for before, line in zip(lines := CODE.sub("", read(page)).splitlines(), lines[1:]):
+                self.assertFalse(line.startswith("- ") and re.match(r"[^\s-]", before), f"{page}: {line}")
+
     def test_the_readme_is_short(self):
         self.assertLessEqual(read("README.md").count("\n"), 130)
 
