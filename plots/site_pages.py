@@ -94,6 +94,7 @@ class Site:
         made = self.markdown.markdown(data.decode(), extensions=["tables", "fenced_code", "toc", "sane_lists"],
                                       extension_configs={"toc": {"slugify": slug}})
         made = re.sub(r'(href|src)="([^"]*)"', lambda match: f'{match[1]}="{html.escape(self.link(path, html.unescape(match[2])))}"', made)
+        made = made.replace("<td><code>", '<td class="code"><code>')  # names in a column, not words of a sentence
         made = re.sub(r"<table>.*?</table>", lambda match: tag("div", match[0], class_="scroll"), made, flags=re.DOTALL)
         title = re.search(r"<h1[^>]*>(.*?)</h1>", made)
         return self.page(self.place(path), "esfem" if path == "README.md" else f"esfem: {re.sub('<[^>]*>', '', title[1] if title else path)}", made)

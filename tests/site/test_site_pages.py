@@ -76,6 +76,7 @@ class Pages(unittest.TestCase):
         for link in ('href="docs/own.html#a-b"', 'href="solver/x.hpp.txt"', 'href="reference/index.html"', 'href="reference/a.json"'):
             self.assertIn(link, page)
         self.assertIn('<div class="scroll"><table>', page)
+        self.assertIn('<td class="code"><code>', page)
         self.assertNotIn("report/index.html", page, "what is not there has no link")
         self.assertIn("figures/kll19/fig13_1.pdf", self.read("gallery.html"))
         self.assertIn('href="../index.html"', self.read("docs/own.html"))
