@@ -61,7 +61,8 @@ EvolveConfig evolve_config(const nlohmann::json& json, const std::string& source
 /// The same without the mesh and what depends on it.
 EvolveConfig checked_keys(const nlohmann::json& json, const std::string& source);
 
-/// The keys with their defaults as JSON Schema (draft 2020-12), by which editors complete and check a configuration.
+/// The keys with their defaults as JSON Schema (draft 2020-12), by which editors complete and check a
+/// configuration.
 nlohmann::json evolve_schema();
 
 }  // namespace esfem
