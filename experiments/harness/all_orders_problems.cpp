@@ -246,6 +246,8 @@ struct WillmoreOnEllipsoid {
 
 }  // namespace
 
+/// A step with the velocity of minimal deformation rate takes several times as long as others: its runs end
+/// sooner, and in time P4 has a coarser mesh.
 const std::vector<OrdersOfFlow>& orders_of_flows() {
   // clang-format off
   static const std::vector<OrdersOfFlow> flows = {
@@ -254,9 +256,9 @@ const std::vector<OrdersOfFlow>& orders_of_flows() {
        {0.2, 0.02}, 0.08, {0.63, 0.94, 1.25, 0.94}, {2, 2, 2, 2, 2},
        113, 2.4e-6},
       {"minimal_deformation", "self-shrinking torus", {"x", "v", "nu", "H"},
-       {0.2, 0.02}, {0.235, 0.47, 0.63, 0.75}, {4, 2, 2, 1, 1},
-       {0.2, 0.02}, 0.08, {0.63, 0.94, 1.25, 0.94}, {2, 2, 2, 2, 2},
-       113, 10e-6},
+       {0.08, 0.02}, {0.235, 0.47, 0.63, 0.75}, {3, 2, 2, 1, 2},
+       {0.14, 0.02}, 0.06, {0.63, 0.94, 1.25, 1.25}, {2, 2, 2, 2, 2},
+       113, 7e-6},
       {"dziuk", "self-shrinking torus", {"x"},
        {0.2, 0.02}, {0.235, 0.47, 0.63, 0.75}, {3, 3, 2, 2, 2},
        {0.2, 0.02}, 0.08, {0.3, 0.47, 0.75, 0.94}, {3, 3, 3, 2, 2},
