@@ -29,6 +29,7 @@ EXAMPLES = {
     "brusselator": ("u1", "$u_1$", view(-65, 20, up=3)),
     "fitzhugh_nagumo": ("u1", "$u_1$", view(-65, 20, up=3)),
     "gray_scott": ("u2", "$u_2$", view(20, 20, up=3)),
+    "vesicle": ("H", "$H$", view(20, 35, up=3)),
     "swimmer": ("u", "$u$", view(-75, 60, up=3)),
 }
 
@@ -44,7 +45,7 @@ def snapshots(collection):
 
 
 def time_label(t):
-    return f"$t = {t:g}$"
+    return f"$t = {t:.4g}$"
 
 
 def picture(files, field, label, rotation):

@@ -5,6 +5,7 @@
 Usage: python3 tests/samples/run_samples.py --build build [--jobs 2] [NAME...]
 An entry of expected.json, by the name of the configuration, has some of
   t, steps, area     of the series, at its end (steps: without those of the start)
+  helfrich_energy    the same
   max_FIELD          the largest nodal value at the end
   tolerance          relative, of all of these; default 1e-6
 Outputs below build/ go to BUILD/samples/, anew. Exits with 1 when a run fails, an entry is missing, or a value differs.
@@ -36,7 +37,8 @@ def names():
 def found_at_end(output):
     """The values that expected.json may name."""
     series, nodal = read(output["series"]), read(output["nodal"])
-    values = {"t": series["t"][-1], "steps": len(series["t"]) - 1, "area": series["area"][-1]}
+    values = {"t": series["t"][-1], "steps": len(series["t"]) - 1}
+    values.update({name: series[name][-1] for name in ("area", "helfrich_energy") if name in series})
     values.update({f"max_{field}": max(nodal[field]) for field in ("u", "u1", "u2", "H") if field in nodal})
     return series["status"], values
 

@@ -12,10 +12,11 @@ EVOLVE = f"#!{sys.executable}\n" + '''import json, sys
 output = json.load(open(sys.argv[1]))["output"]
 if "fails" in output["series"]:
     sys.exit("evolve: fails.json: no such flow")
-json.dump({"status": "ok", "t": [0, 0.5, 1.0], "area": [4.0, 3.0, 2.5]}, open(output["series"], "w"))
+json.dump({"status": "ok", "t": [0, 0.5, 1.0], "area": [4.0, 3.0, 2.5],
+           "helfrich_energy": [6.0, 5.5, 5.0]}, open(output["series"], "w"))
 json.dump({"u": [1, 7, 3]}, open(output["nodal"], "w"))
 '''
-RIGHT = {"t": 1.0, "steps": 2, "area": 2.5, "max_u": 7}
+RIGHT = {"t": 1.0, "steps": 2, "area": 2.5, "helfrich_energy": 5.0, "max_u": 7}
 
 
 class RunSamples(unittest.TestCase):
@@ -45,7 +46,7 @@ class RunSamples(unittest.TestCase):
     def test_values_as_expected(self):
         code, said = self.outcome({"one": RIGHT})
         self.assertEqual(code, 0, said)
-        self.assertIn("as expected: t 1, steps 2, area 2.5, max_u 7", said)
+        self.assertIn("as expected: t 1, steps 2, area 2.5, helfrich_energy 5, max_u 7", said)
 
     def test_each_value_that_differs_is_an_error(self):
         for name, value in RIGHT.items():
