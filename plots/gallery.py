@@ -18,8 +18,8 @@ from table import TableError
 
 PICTURES = ("kll19/fig13_1", "kll19/fig13_3", "kll21/fig7_5", "gallery/willmore_relaxation", "gallery/willmore_projection",
             "gallery/willmore_projection_length", "bk22/fig6", "gallery/all_orders",
-            "gallery/mcf_angenent_torus", "gallery/mcf_competitors", "gallery/tumour_growth", "pfhub/fig1d", "gallery/tangential_motion", "gallery/helfrich_vesicles",
-            "gallery/helfrich_energies")
+            "gallery/mcf_angenent_torus", "gallery/mcf_competitors", "gallery/tumour_growth", "pfhub/fig1d", "gallery/tangential_motion",
+            "gallery/tangential_motion_willmore", "gallery/helfrich_vesicles", "gallery/helfrich_energies")
 WIDTH = 1000  # pixels
 # Verdicts of the headline, and their heads there: in words that need no explanation.
 COLUMNS = {"reproduced": "reproduced", "reproduced, but": "reproduced, but with a restriction", "cannot be told": "cannot be told from the runs",

@@ -90,6 +90,7 @@ BEYOND = (
     Figure("gallery/willmore_competitors", "", "willmore_competitors", "Willmore flow by three schemes."),
     Figure("gallery/surface_diffusion", "", "surface_diffusion", "Surface diffusion of an ellipsoid."),
     Figure("gallery/tangential_motion", "", "tangential_motion", "Smallest angle and radius ratio with and without tangential motion."),
+    Figure("gallery/tangential_motion_willmore", "", "tangential_motion", "Willmore flow of a torus with and without tangential motion and relaxation."),
     Figure("gallery/helfrich_energies", "", "helfrich_vesicles", "Vesicles: energies of Helfrich flow with given area and volume."),
     Figure("gallery/helfrich_vesicles", "", "helfrich_vesicles", "The same: their shapes."),
     Figure("gallery/tumour_growth", "", "tumour_growth", "A growing tumour: surface evolution coupled to reaction and diffusion."),
