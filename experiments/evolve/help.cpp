@@ -143,7 +143,7 @@ explained with each flow.
               "normal_length": 4},            limit if that minimum is < 0.01); |nu| or 1/|nu| of a flow's nu above this
    "exact": {"u": "exp(-6*t)*x*y"},           a solution by formulas of x, y, z, t: the series has the errors of each step
    "definitions": {"r2": "x^2 + y^2"},        names for parts of formulas
-   "output": {"nodal": "end.json",            default: nodal values on standard output
+   "output": {"nodal": "end.json",            nodal values at the end; without "output" on standard output
               "history": true,                nodal has the steps before, so that "initial" goes on bit for bit; default: true
                                               with tau and a file
               "series": "series.json",        written at the end; "series.csv": a line per step, written at once
