@@ -173,7 +173,8 @@ class Units : public InFolder, public testing::WithParamInterface<FlowCase> {
                             found = numbers(other.at(quantity), quantity, power, length, shift);
       // Positions far from the origin have lost digits in the file.
       double tolerance = quantity == "x" ? 1e-10 + 1e-15 * std::abs(shift) : 1e-10;
-      // Multipliers have the round-off of the area, over tau, and the velocity that they are a part of has some.
+      // Multipliers have the round-off of the area, over tau, and the velocity that they are a part of has
+      // some.
       if (quantity == "lambda_A" || quantity == "lambda_V") tolerance = 1e-8;
       if (GetParam().keys["flow"] == "helfrich" && (quantity == "V" || quantity == "v")) tolerance = 1e-9;
       EXPECT_LE((found - expected).cwiseAbs().maxCoeff(), tolerance * expected.cwiseAbs().maxCoeff())
