@@ -106,12 +106,13 @@ void MinimalDeformation::multiply_B_transposed(const Field& v, Field& out) const
   }
 }
 
-/// out = P r, for one column or more.
+/// out = P r with C^T out = 0.
 void MinimalDeformation::precondition(const Field& r, Field& out) {
   work_ = r;
   mass_solver_.solve(work_);
   B_W_[3].multiply(work_, out);
   mass_solver_.solve(out);
+  keep_constraint(out);
 }
 
 /// S_p_ = S p and v_p = A_g^-1 B p.
@@ -125,7 +126,7 @@ void MinimalDeformation::multiply_S(const Field& p, Field& v_p) {
 void MinimalDeformation::guess() {
   if (differences_.size() == 0) differences_.setZero(space_.dofs(), most_differences);
   kappa_ = differences_.leftCols(known_differences_).rowwise().sum();
-  kappa_ -= PC_ * CPC_.solve(C_.transpose() * kappa_);
+  keep_constraint(kappa_);
 }
 
 void MinimalDeformation::keep_for_guesses() {
@@ -137,21 +138,29 @@ void MinimalDeformation::keep_for_guesses() {
   known_differences_ = std::min(known_differences_ + 1, most_differences);
 }
 
-/// C, P C and (C^T P C)^-1.
-void MinimalDeformation::factorise_constraint() {
+/// C, E and (E^T C)^-1.
+void MinimalDeformation::set_constraint(const Field& nu_V) {
   ones_.setOnes(space_.dofs(), 1);
   multiply_B(ones_, v_p_);
   C_.setZero(space_.dofs(), 3 * fixed_nodes_.size());
-  for (int j = 0; j < space_.dofs(); ++j) C_.block<1, 3>(j, 3 * component_[j]) = v_p_.row(j);
-  precondition(C_, PC_);
-  CPC_.compute(C_.transpose() * PC_);
+  E_.setZero(space_.dofs(), 3 * fixed_nodes_.size());
+  for (int j = 0; j < space_.dofs(); ++j) {
+    C_.block<1, 3>(j, 3 * component_[j]) = v_p_.row(j);
+    E_.block<1, 3>(j, 3 * component_[j]) = nu_V.block<1, 3>(j, 0);
+  }
+  EC_inverse_ = (E_.transpose() * C_).inverse();
 }
 
-/// The part of r that belongs to the mean motions goes to these; C^T P r = 0 is left.
-void MinimalDeformation::project() {
-  const Field of_constraint = CPC_.solve(PC_.transpose() * r_);
-  r_ -= C_ * of_constraint;
-  mean_motion_ += of_constraint;
+/// The part of r that belongs to the mean motions goes to these; E^T r = 0 is left.
+void MinimalDeformation::split_mean_motion() {
+  const Field motion = EC_inverse_ * (E_.transpose() * r_);
+  r_ -= C_ * motion;
+  mean_motion_ += motion;
+}
+
+/// C^T p = 0 for the p that is left; r . p stays when E^T r = 0.
+void MinimalDeformation::keep_constraint(Field& p) const {
+  p -= E_ * (EC_inverse_.transpose() * (C_.transpose() * p));
 }
 
 /// B_a; A + W for the preconditioner; and the factors.
@@ -168,7 +177,7 @@ void MinimalDeformation::set_matrices(const Field& x, const Field& nu_V, const S
   B_W_[3].values += A.values;
   ground(A);
   mass_solver_.factorise(1, M, 0, A);
-  factorise_constraint();
+  set_constraint(nu_V);
 }
 
 void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const SymmetricMatrix& M,
@@ -181,7 +190,7 @@ void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const Symme
   multiply_S(kappa_, v);
   r_ = b_ - S_p_;
   mean_motion_.setZero(C_.cols(), 1);
-  project();
+  split_mean_motion();
   precondition(r_, z_);
   p_ = z_;
   double size = r_.col(0).dot(z_.col(0));
@@ -196,7 +205,7 @@ void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const Symme
     v += length * v_p_;
     kappa_ += length * p_;
     r_ -= length * S_p_;
-    project();
+    split_mean_motion();
     precondition(r_, z_);
     const double next_size = r_.col(0).dot(z_.col(0));
     p_ = z_ + next_size / size * p_;

@@ -26,7 +26,9 @@ namespace esfem {
 /// Nocedal, SIAM J. Sci. Comput. 23, 2001). Without tangential motion kappa = (-Lap + |A|²) V, so that S^-1
 /// is close to P = M^-1 (A + W) M^-1, W_ij = int |grad nu|² phi_i phi_j: both have the principal symbol of
 /// -Lap, since sum_a nu_a² = 1, and P S is the identity and a compact operator. The number of iterations does
-/// not depend on the mesh. It takes three unknowns a node less than a factorisation of the whole system does.
+/// not depend on the mesh. With E_a the nodal values of nu_a, E^T C is regular, and 1 - E (C^T E)^-1 C^T and
+/// its transpose project onto these kappa and their residuals. It takes three unknowns a node less than a
+/// factorisation of the whole system does.
 class MinimalDeformation {
  public:
   /// The space must outlive the object.
@@ -57,8 +59,9 @@ class MinimalDeformation {
   void guess();
   void keep_for_guesses();
   void precondition(const Field& r, Field& out);
-  void factorise_constraint();
-  void project();
+  void set_constraint(const Field& nu_V);
+  void split_mean_motion();
+  void keep_constraint(Field& p) const;
 
   const SurfaceSpace& space_;
   std::vector<int> component_;    ///< of the surface, by node
@@ -66,8 +69,8 @@ class MinimalDeformation {
   SymmetricMatrix B_W_[4];        ///< B_1, B_2, B_3 and, with A added to it, W
   SymmetricMatrix grounded_;
   SpdSolver grounded_solver_, mass_solver_;
-  Field C_, PC_;  ///< three columns a component
-  Eigen::LDLT<Field> CPC_;
+  Field C_, E_;       ///< three columns a component; E: nodal values of nu
+  Field EC_inverse_;  ///< of E^T C
   Field kappa_, mean_motion_;
   Field differences_;  ///< of kappa of the last velocities: backward ones of order 0, 1, 2, 3
   int known_differences_ = 0;
