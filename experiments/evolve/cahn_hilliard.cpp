@@ -28,7 +28,9 @@ void run_ellipsoid(const Run& run) {
   Field theta;
   if (config.variant.truth("theta"))
     theta = cahn_hilliard_theta(run.space, DoubleWell(), exact.epsilon(), start);
-  run_flow(CahnHilliard(run.space, exact.problem(), motion, exact.epsilon(), theta), run, start, exact_state);
+  run_flow(CahnHilliard(run.space, exact.problem(), motion, exact.epsilon(), theta, {}, {},
+                        limits_of_own_problem(run, start.u)),
+           run, start, exact_state);
 }
 
 CahnHilliardState start_of_mixture(const Run& run, double epsilon) {

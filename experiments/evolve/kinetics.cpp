@@ -109,13 +109,6 @@ Field initial_velocity(const EvolveConfig& config, int species) {
   return u_v.rightCols(3);
 }
 
-/// A run may start from traces of a species; only values that no solution has end it.
-RegularityLimits limits_of_species(const Run& run, const Field& u) {
-  RegularityLimits limits = limits_of(run);
-  if (u.size() > 0 && u.cwiseAbs().maxCoeff() > 0) limits.field_size = 1e9 * u.cwiseAbs().maxCoeff();
-  return limits;
-}
-
 void run_driven(const Run& run, const Kinetics& kinetics, Field u) {
   const EvolveConfig& config = run.config;
   const Field& x = config.mesh.nodes;
@@ -132,7 +125,7 @@ void run_driven(const Run& run, const Kinetics& kinetics, Field u) {
                                            config.variant.is("law", "regularised")
                                                ? CoupledDiffusionVariant::regularised
                                                : CoupledDiffusionVariant::dynamic};
-  const RegularityLimits limits = limits_of_species(run, u);
+  const RegularityLimits limits = limits_of_own_problem(run, u);
   run_flow(
       CoupledKinetics(run.space, formula_kinetics(f_and_g), parameters, variant, limits, law,
                       kinetics.depends_on_curvature()),
@@ -147,7 +140,7 @@ void run_prescribed(const Run& run, const Kinetics& kinetics, Field u) {
   const UniformSteps steps = steps_of(run, exact_u != nullptr);
   const NodalMotion motion = prescribed_motion(config, run.space, steps);
   ReactionDiffusion flow(run.space, formula_kinetics(kinetics.f), kinetics.diffusion, motion, velocity,
-                         limits_of_species(run, u));
+                         limits_of_own_problem(run, u));
   std::function<ReactionDiffusionState(double)> exact_state;
   if (exact_u) exact_state = [&](double t) { return flow.state(t, exact_u(motion(t), t)); };
   run_flow(flow, run, flow.state(steps.time(0), std::move(u)), exact_state);

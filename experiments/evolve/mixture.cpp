@@ -71,8 +71,10 @@ void run_mixture(const Run& run) {
                                       : cahn_hilliard_start(run.space, mixture, epsilon, t0, x, u);
   Field theta;
   if (config.variant.truth("theta")) theta = cahn_hilliard_theta(run.space, mixture, epsilon, start);
+  const double well = config.formulas.contains("potential") ? 0 : 1;  // where the double well is lowest
   run_flow(CahnHilliard(run.space, mixture, motion, epsilon, theta,
-                        prescribed_velocity(config, &run.space, "tangential"), mobility_of(config)),
+                        prescribed_velocity(config, &run.space, "tangential"), mobility_of(config),
+                        limits_of_own_problem(run, start.u, well)),
            run, start, exact_state);
 }
 

@@ -36,6 +36,13 @@ RegularityLimits limits_of(const Run& run, double size_of_u) {
   return limits;
 }
 
+RegularityLimits limits_of_own_problem(const Run& run, const Field& u, double usual_size) {
+  RegularityLimits limits = limits_of(run);
+  const double size = std::max(usual_size, u.size() > 0 ? u.cwiseAbs().maxCoeff() : 0.0);
+  if (size > 0) limits.field_size = 1e9 * size;
+  return limits;
+}
+
 void compare_curvature(const Run& run) {
   if (!run.outcome.remark.empty() || !run.config.entry->evolves_curvature) return;
   const auto found = run.recorder.compare_curvature();

@@ -51,6 +51,9 @@ std::optional<ExactEvolution> exact_mean_curvature_solution(const EvolveConfig& 
 
 /// The limits of a run; size_of_u: of the concentrations on the surface, if there are any.
 RegularityLimits limits_of(const Run& run, double size_of_u = 0);
+/// Those of kinetics and mixtures, which may start from traces u of a species: only values that no solution
+/// has, 1e9 times those at the start or usual_size, end a run.
+RegularityLimits limits_of_own_problem(const Run& run, const Field& u, double usual_size = 0);
 
 /// Warns once that nu and H of the flow are no longer those of the surface.
 void compare_curvature(const Run& run);

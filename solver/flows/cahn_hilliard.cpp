@@ -5,18 +5,19 @@
 
 #include "solver/error.hpp"
 #include "solver/geometry/l2_project.hpp"
-#include "solver/geometry/regularity.hpp"
 
 namespace esfem {
 
 CahnHilliardScheme::CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon,
-                                       Field theta, Velocity tangential, Mobility mobility)
+                                       Field theta, Velocity tangential, Mobility mobility,
+                                       const RegularityLimits& limits)
     : space_(space),
       motion_(std::move(motion)),
       epsilon_(epsilon),
       theta_(std::move(theta)),
       tangential_(std::move(tangential)),
       mobility_(std::move(mobility)),
+      limits_(limits),
       M_(space.matrix()),
       A_(space.matrix()) {
   if (!(epsilon > 0) || !std::isfinite(epsilon))
@@ -64,6 +65,7 @@ void CahnHilliardScheme::advance(const BdfStep<State>& step, const Field& loads,
     solve_with_variable_mobility(step.delta[0] / step.tau, next);
   else
     solve(step.delta[0] / step.tau, next);
+  require_bounded("u", next.x, next.u, limits_);
   M_.multiply(next.u, next.Mu);
 }
 

@@ -8,6 +8,7 @@
 
 #include "solver/assembly/surface_space.hpp"
 #include "solver/geometry/prescribed_motion.hpp"
+#include "solver/geometry/regularity.hpp"
 #include "solver/linalg/block_solver.hpp"
 #include "solver/linalg/symmetric_block_solver.hpp"
 #include "solver/nodal_field.hpp"
@@ -58,9 +59,9 @@ class CahnHilliardScheme {
   using State = CahnHilliardState;
 
   /// theta (N x 1), see cahn_hilliard_theta; none when it is empty. tangential: W in the nodes; none: they
-  /// are material points. Throws InputError unless epsilon > 0.
+  /// are material points. limits: of |u|. Throws InputError unless epsilon > 0.
   CahnHilliardScheme(const SurfaceSpace& space, NodalMotion motion, double epsilon, Field theta,
-                     Velocity tangential, Mobility mobility);
+                     Velocity tangential, Mobility mobility, const RegularityLimits& limits);
 
   /// next.x at next.t, M and A there, and the extrapolated u~. Throws SingularityError where elements are
   /// degenerate.
@@ -70,7 +71,7 @@ class CahnHilliardScheme {
   void set_theta(Field theta) { theta_ = std::move(theta); }
 
   /// After prepare: solves for u and w. loads: N x 2, f(u~) and g(u~); b: nodal values at next.t, N x 1
-  /// (none: empty).
+  /// (none: empty). Throws SingularityError where |u| is beyond its limit.
   void advance(const BdfStep<State>& step, const Field& loads, const Field& b, State& next);
 
  private:
@@ -91,6 +92,7 @@ class CahnHilliardScheme {
   Field theta_;
   Velocity tangential_;
   Mobility mobility_;
+  RegularityLimits limits_;
   SymmetricMatrix M_, A_;
   std::optional<BlockSolver> block_;  ///< one of these
   std::optional<VariableMobility> variable_;
@@ -114,14 +116,15 @@ class CahnHilliard {
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
   CahnHilliard(const SurfaceSpace& space, Problem problem, NodalMotion motion, double epsilon,
-               Field theta = {}, Velocity tangential = {}, Mobility mobility = {})
+               Field theta = {}, Velocity tangential = {}, Mobility mobility = {},
+               const RegularityLimits& limits = {})
       : space_(space),
         problem_(std::move(problem)),
         scheme_(space, std::move(motion), epsilon, std::move(theta), std::move(tangential),
-                std::move(mobility)) {}
+                std::move(mobility), limits) {}
 
   /// One step with BDF of order q: fills all fields of next. Throws SingularityError where elements have
-  /// degenerated.
+  /// degenerated, or u has blown up.
   void step(const BdfStep<State>& step, State& next) {
     scheme_.prepare(step, next);
     const auto f_and_g = [&](const PointData<1>& p, Integrand<2, 0>& load) {

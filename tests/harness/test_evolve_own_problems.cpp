@@ -372,5 +372,35 @@ TEST_F(OwnProblems, KineticsThatBlowUpEndAsSingular) {
       << message;
 }
 
+TEST_F(OwnProblems, MixturesThatBlowUpEndAsSingular) {
+  // The explicit potential needs steps below 0.4 epsilon³.
+  json problem = with({{"flow", "cahn_hilliard"},
+                       {"problem", "mixture"},
+                       {"bdf", 1},
+                       {"tau", 0.2},
+                       {"steps", 20},
+                       {"parameters", {{"epsilon", 0.1}}},
+                       {"initial", {{"u", "0.5*x"}}}});
+  const auto is_singular = [&](const json& configuration) {
+    EXPECT_EQ(run(configuration), exit_numerics) << message;
+    EXPECT_THAT(message, AllOf(HasSubstr("singular at t = "), HasSubstr("u = "), HasSubstr(" at node "),
+                               HasSubstr("smaller steps")));
+  };
+  is_singular(problem);
+  problem["potential"] = "(u^2-1)^2/4";
+  is_singular(problem);
+  problem["mobility"] = "1+u^2/(1+u^2)";  // by the solver for variable ones
+  is_singular(problem);
+  problem.erase("mobility");
+  problem["tau"] = 1e-4;
+  EXPECT_EQ(run(problem), exit_done) << message;
+  is_singular(config({{"flow", "cahn_hilliard"},
+                      {"problem", "ellipsoid"},
+                      {"bdf", 1},
+                      {"tau", 0.2},
+                      {"steps", 50},
+                      {"parameters", {{"epsilon", 0.02}}}}));
+}
+
 }  // namespace
 }  // namespace esfem::test_evolve_own_problems
