@@ -65,6 +65,11 @@ Key tangential_key() {
       "elements in shape");
 }
 
+void check_tangential(const EvolveConfig& config, const std::string& source) {
+  if (!config.variant.is("tangential", "none"))
+    refuse_given(config.variant, {"velocity"}, source + ": variant", "with tangential motion");
+}
+
 std::string linear_elements(const EvolveConfig& config) {
   return config.mesh.degree > 1 ? " with \"degree\": 1" : "";
 }

@@ -44,5 +44,7 @@ std::string smaller_steps_or_even_elements(const EvolveConfig& config);
 Key reinitialise_key();
 /// "tangential" of flows whose nodes can move along the surface, too.
 Key tangential_key();
+/// Throws InputError for a "velocity" beside it, which then is neither of the two that this key offers.
+void check_tangential(const EvolveConfig& config, const std::string& source);
 
 }  // namespace esfem

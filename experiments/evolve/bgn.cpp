@@ -13,6 +13,7 @@ std::vector<Entry> bgn_entries() {
   entry.run = [](const Run& run) {
     run_flow(BgnFlow(run.space, limits_of(run)), run, bgn_state_on(run.space, run.config.mesh.nodes));
   };
+  entry.limits = {"curvature_size", "radius_ratio"};
   entry.highest_order = entry.order = entry.order_on_files = 1;
   entry.lumps_linear_elements = true;
   entry.energy = "area";

@@ -91,6 +91,11 @@ std::vector<Entry> cahn_hilliard_entries() {
                         {Key::number, "disturbance", 0.1, "of u"},
                         {Key::seed, "seed", 1, "of the disturbance"}};
   mixture.formulas = {initial_key({"u"})};
+  mixture.check = [](const EvolveConfig& config, const std::string& source) {
+    if (config.formulas.contains("initial"))
+      refuse_given(config.parameters, {"mean", "disturbance", "seed"}, source + ": parameters",
+                   "with initial values");
+  };
   mixture.run = run_phase_separation;
   mixture.starts = {{"u"}, {"u", "w"}};
   mixture.starts_beside_surface = true;

@@ -2,7 +2,6 @@
 #include "experiments/evolve/config.hpp"
 
 #include <algorithm>
-#include <regex>
 
 #include "experiments/evolve/formulas.hpp"
 #include "experiments/evolve/initial.hpp"
@@ -10,6 +9,7 @@
 #include "experiments/evolve/series_lines.hpp"
 #include "experiments/evolve/start.hpp"
 #include "experiments/evolve/units.hpp"
+#include "solver/did_you_mean.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
 #include "solver/surfaces/named.hpp"
@@ -68,15 +68,18 @@ UniformSteps time_grid(const JsonReader& reader, const Entry& entry) {
     throw InputError(
         format("%s: found tau = %g; expected a positive step size", reader.where().c_str(), grid.tau));
   }
-  if (reader.has("start")) grid.start = parse_start(reader.text("start"));
+  if (reader.has("start"))
+    grid.start = headed(reader.where(), [&] { return parse_start(reader.text("start")); });
   return grid;
 }
 
 Quadrature quadrature(const json& description, const std::string& where) {
   const JsonReader reader(description, where);
   const std::string key = reader.only_key({"conical", "degree"});
-  return key == "conical" ? conical_quadrature(reader.integer("conical"))
-                          : symmetric_quadrature(reader.integer("degree"));
+  return headed(where, [&] {
+    return key == "conical" ? conical_quadrature(reader.integer("conical"))
+                            : symmetric_quadrature(reader.integer("degree"));
+  });
 }
 
 /// For messages: the flow, or where it has several the problem.
@@ -129,36 +132,30 @@ void read_formulas(const JsonReader& reader, EvolveConfig& config) {
       throw InputError(reader.where() + ": " + name + " takes no " + key + "; expected no key " + key);
 }
 
-/// The names in all texts of a JSON value.
-std::set<std::string> names_in(const json& value) {
-  static const std::regex name("[A-Za-z_][A-Za-z_0-9]*");
-  std::set<std::string> names;
-  for (const json& part : value.flatten()) {
-    if (!part.is_string()) continue;
-    const std::string text = part;
-    for (std::sregex_iterator found(text.begin(), text.end(), name), end; found != end; ++found)
-      names.insert(found->str());
-  }
-  return names;
-}
-
 /// Refuses a number of one's own that no formula names: it is misspelt.
-void require_named_parameters(const EvolveConfig& config) {
-  std::set<std::string> names = names_in(config.formulas);
+void require_named_parameters(const JsonReader& reader, const EvolveConfig& config) {
+  std::set<std::string> names = names_in_formulas(config);
+  if (reader.has("surface")) names.merge(names_in(reader.object("surface")));
   for (const Key& key : config.entry->parameters) names.insert(key.name);
   std::string others;
+  std::vector<std::string> own_names;
+  for (const Key& key : config.entry->parameters) own_names.push_back(key.name);
   for (const auto& [name, value] : config.parameters.numbers()) others += (others.empty() ? "" : ", ") + name;
   for (const auto& [name, value] : config.parameters.numbers())
     if (names.count(name) == 0)
       throw InputError(config.source + ": parameters: found " + name +
-                       ", which no formula names; found are " + others);
+                       ", which no formula names; found are " + others + did_you_mean(name, own_names));
 }
 
 /// "limits": the bounds beyond which a run is singular.
 void read_limits(const JsonReader& reader, EvolveConfig& config) {
   reader.accept_only({"curvature_size", "radius_ratio", "normal_length"});
+  const std::set<std::string>& known = config.entry->limits;
   const auto read = [&](const char* key, double low, std::optional<double>& limit) {
     if (!reader.has(key)) return;
+    if (known.count(key) == 0)
+      throw InputError(reader.where() + ": found " + key + ", which " + words_for(*config.entry) +
+                       " does not look at; expected " + (known.empty() ? "no key limits" : listed(known)));
     limit = reader.number(key);
     if (!(*limit > low))
       throw InputError(format("%s: found %s = %g; expected a number greater than %g", reader.where().c_str(),
@@ -265,11 +262,16 @@ Keys read_keys(const json& given, const std::string& source) {
     config.snapshots = snapshot_plan(output);
     config.nodal_has_history = wants_history(output, config);
   }
-  if (reader.has("surface")) config.surface = named_surface(reader.object("surface"));
   config.variant = settings(reader, "variant", entry.variant, entry);
   config.parameters = settings(reader, "parameters", entry.parameters, entry);
   read_formulas(reader, config);
-  if (entry.takes_own_parameters) require_named_parameters(config);
+  if (reader.has("surface")) {
+    const json& surface = reader.object("surface");
+    config.surface = headed(source, [&] { return named_surface(surface, given_names(config)); });
+  }
+  if (entry.takes_own_parameters) require_named_parameters(reader, config);
+  if (config.stop.area && is_at_rest(config))
+    throw InputError(source + ": stop: found area, but the surface is at rest; expected speed or seconds");
   if (entry.check) entry.check(config, source);
   if (reader.has("degree")) keys.degree = reader.integer_within("degree", 0, 1, max_degree);
   return keys;

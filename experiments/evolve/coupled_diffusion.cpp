@@ -80,6 +80,7 @@ Entry coupled_entry(const std::string& problem) {
   entry.variant = {
       word("mass", {"extrapolated", "reassembled"}, "(2.19), or (7.2), which loses an order in time"),
       word("law", {"regularised", "dynamic"}, "of the velocity: (2.8), or Kovács, Lubich 2018")};
+  entry.limits = {"radius_ratio"};
   entry.can_shrink_to_nothing = true;
   entry.cure = smaller_steps_or_even_elements;
   return entry;
@@ -117,6 +118,13 @@ std::vector<Entry> coupled_diffusion_entries() {
       {Key::number, "disturbance", 0.01, "of the steady state"},
       {Key::seed, "seed", 1, "of the disturbance"}};
   tumour.formulas = {initial_key({"u1", "u2"})};
+  tumour.check = [](const EvolveConfig& config, const std::string& source) {
+    if (config.variant.is("law", "dynamic"))
+      refuse_given(config.parameters, {"epsilon"}, source + ": parameters", "with the dynamic law");
+    if (config.formulas.contains("initial"))
+      refuse_given(config.parameters, {"disturbance", "seed"}, source + ": parameters",
+                   "with initial values");
+  };
   tumour.run = run_tumour_growth;
   tumour.starts = {{"u1", "u2"}, {"u1", "u2", "v"}};
   tumour.starts_beside_surface = true;

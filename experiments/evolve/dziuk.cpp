@@ -24,6 +24,7 @@ std::vector<Entry> dziuk_entries() {
   entry.flow = "dziuk";
   entry.help = "mean curvature flow by Dziuk's scheme, kll19 (3.6); unstable with bdf 4 and 5";
   entry.run = run_dziuk;
+  entry.limits = {"curvature_size", "radius_ratio"};
   entry.exact_solution = exact_mean_curvature_solution;
   // With a higher order the nodes drift along surfaces that are rough, as meshes of files are, until elements
   // degenerate (DziukFlow).

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct Entry {
   std::function<void(const Run&)> run;
   /// Throws InputError for what the keys alone do not show; `source` heads the message. None: nothing.
   std::function<void(const EvolveConfig&, const std::string& source)> check = {};
+  /// The keys of "limits" that the flow looks at.
+  std::set<std::string> limits = {};
 
   /// The exact solution, where one is known for the configuration; none: there is none.
   std::function<std::optional<ExactEvolution>(const EvolveConfig&)> exact_solution = {};

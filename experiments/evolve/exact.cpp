@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "experiments/evolve/formulas.hpp"
+#include "experiments/harness/warn.hpp"
 #include "solver/error.hpp"
 #include "solver/problems/formula_data.hpp"
 #include "solver/problems/formula_evolution.hpp"
@@ -56,9 +57,26 @@ void ExactFormulas::find_exact_surface(const EvolveConfig& config) {
     exact_.surface = formula_level_set(formula_in(reader, "level_set", names), space_.length());
     return true;
   };
-  if (take("exact") || take("velocity")) return;
+  is_compared_ = take("exact") || take("velocity");
+  if (is_compared_) {
+    const double start = config.adaptive ? config.adaptive->start_time : config.grid.start_time;
+    if (config.formulas.at("exact").contains("level_set"))
+      compare_with_nodes(exact_.surface(start), config.mesh, start, where_);
+    return;
+  }
   if (is_at_rest(config) && config.surface)
     exact_.surface = [surface = *config.surface](double) { return surface; };
+}
+
+void ExactFormulas::warn_of_distance(double t, const Field& x) {
+  if (!is_compared_) return;
+  const double h = mesh_quality(space_.elements(), x0_).h;
+  const Distance found = farthest_from(exact_.surface(t), x);
+  if (found.value <= h) return;
+  is_compared_ = false;
+  warn(where_ + format(": at t = %g the nodes have left the exact surface: the farthest, at (%g, %g, %g), is "
+                       "at a distance of about %.2g (longest edge: %.2g), and lifted errors mean little",
+                       t, found.at[0], found.at[1], found.at[2], found.value, h));
 }
 
 Field ExactFormulas::columns(const Field& x, const NodalFields& fields) const {
@@ -82,6 +100,7 @@ Field ExactFormulas::columns(const Field& x, const NodalFields& fields) const {
 
 void ExactFormulas::record(double t, const Field& x, const NodalFields& fields, Series& series) {
   const Field w = columns(x, fields);
+  warn_of_distance(t, x);
   const Field x_star = exact_.trajectories ? exact_.trajectories(x0_, t) : x;
   Field e = w;
   if (nodal_.count() > 0) {

@@ -31,12 +31,15 @@ class ExactFormulas {
  private:
   Field columns(const Field& x, const NodalFields& fields) const;
   void find_exact_surface(const EvolveConfig& config);
+  /// Once, when nodes are farther from the exact surface than the longest edge at the start.
+  void warn_of_distance(double t, const Field& x);
 
   const SurfaceSpace& space_;
   std::string where_;
   Field x0_;
-  ExactEvolution exact_;    ///< surface and trajectories only where they are known
-  CompiledFormulas nodal_;  ///< all but x
+  ExactEvolution exact_;      ///< surface and trajectories only where they are known
+  CompiledFormulas nodal_;    ///< all but x
+  bool is_compared_ = false;  ///< the nodes with a level set of the exact surface
   std::optional<Quantities> quantities_;
   SymmetricMatrix M_, A_;
 };

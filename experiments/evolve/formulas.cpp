@@ -2,12 +2,16 @@
 #include "experiments/evolve/formulas.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
+#include <regex>
 
 #include "experiments/evolve/start.hpp"
+#include "experiments/harness/warn.hpp"
 #include "solver/error.hpp"
 #include "solver/geometry/discrete_curvature.hpp"
 #include "solver/problems/formula_data.hpp"
+#include "solver/problems/formula_evolution.hpp"
 
 namespace esfem {
 namespace {
@@ -63,6 +67,29 @@ FormulaNames names_of(const EvolveConfig& config) {
   return names;
 }
 
+FormulaNames given_names(const EvolveConfig& config) {
+  FormulaNames names = names_of(config);
+  for (const Key& key : config.entry->parameters)
+    if (!config.parameters.is_given(key.name)) names.constants.erase(key.name);
+  return names;
+}
+
+std::set<std::string> names_in(const json& value) {
+  static const std::regex name("[A-Za-z_][A-Za-z_0-9]*");
+  std::set<std::string> names;
+  for (const json& part : value.flatten()) {
+    if (!part.is_string()) continue;
+    const std::string text = part;
+    for (std::sregex_iterator found(text.begin(), text.end(), name), end; found != end; ++found)
+      names.insert(found->str());
+  }
+  return names;
+}
+
+std::set<std::string> names_in_formulas(const EvolveConfig& config) {
+  return names_in(config.formulas);
+}
+
 FormulaKey initial_key(const std::vector<std::string>& names) {
   std::string example;
   for (const std::string& name : names)
@@ -102,7 +129,8 @@ void take_initial_values(EvolveConfig& config) {
       expected += (expected.empty() ? "" : "; or ") + listed(set);
     }
     if (!expected.empty())
-      throw InputError(reader.where() + ": found " + listed(given) + "; expected " + expected);
+      throw InputError(reader.where() + ": found " + (given.empty() ? "{}" : listed(given)) + "; expected " +
+                       expected);
   }
   names.variables = {"x", "y", "z"};
   for (const std::string& name : given) {
@@ -172,6 +200,30 @@ NodalMotion motion_from(double start, const Velocity& velocity, const Field& x, 
 
 }  // namespace
 
+Distance farthest_from(const Surface& surface, const Field& x) {
+  Distance farthest = {-1, Vec3::Zero()};
+  for (const Vec3 at : x.rowwise()) {
+    const LevelSetJet d = surface.level_set(at);
+    const double distance = std::abs(d.value) / d.gradient.norm();
+    if (!(distance <= farthest.value)) farthest = {distance, at};
+    if (std::isnan(distance)) break;
+  }
+  return farthest;
+}
+
+void compare_with_nodes(const Surface& surface, const Mesh& mesh, double t, const std::string& where) {
+  const double h = mesh_quality(mesh.elements, mesh.nodes).h;
+  const Distance found = farthest_from(surface, mesh.nodes);
+  if (found.value <= 1e-3 * h) return;
+  const std::string remark =
+      where + format(
+                  ": nodes are not on the level set at t = %g: the farthest, at (%g, %g, %g), is at a "
+                  "distance of about %.2g (longest edge: %.2g)",
+                  t, found.at[0], found.at[1], found.at[2], found.value, h);
+  if (found.value <= h) return warn(remark);
+  throw InputError(remark + "; expected zeros of it in the nodes");
+}
+
 NodalMotion prescribed_motion(const EvolveConfig& config, const SurfaceSpace& space,
                               const UniformSteps& steps) {
   const Field& x = config.mesh.nodes;
@@ -180,6 +232,13 @@ NodalMotion prescribed_motion(const EvolveConfig& config, const SurfaceSpace& sp
   const NodalMotion fine =
       motion_from(steps.start_time, velocity, x, steps.tau / steps.start.substeps_per_step);
   const json& given = config.formulas.at("velocity");
+  if (given.is_object() && given.contains("level_set")) {
+    const std::string where = config.source + ": velocity";
+    const Formula d =
+        formula_in(JsonReader(given, where), "level_set", names_in_space_time(names_of(config)));
+    const Surface at_start = formula_level_set(d, space.length())(steps.start_time);
+    compare_with_nodes(at_start, config.mesh, steps.start_time, where);
+  }
   if (!given.is_object() || !given.contains("normal")) return fine;
   // A velocity along discrete normals costs a factorisation: substeps only where the starting values need
   // them.

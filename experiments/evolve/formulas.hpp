@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ std::vector<Formula> formulas_in(const JsonReader& reader, const std::string& ke
 
 /// The parameters and the definitions, as names of formulas.
 FormulaNames names_of(const EvolveConfig& config);
+
+/// The same with the numbers alone that the configuration gives, without defaults, which have units of a
+/// surface.
+FormulaNames given_names(const EvolveConfig& config);
+/// The names in all texts of a JSON value, and of all formulas.
+std::set<std::string> names_in(const nlohmann::json& value);
+std::set<std::string> names_in_formulas(const EvolveConfig& config);
 
 /// "initial": values of these fields at t = 0.
 FormulaKey initial_key(const std::vector<std::string>& names);
@@ -43,6 +51,16 @@ std::function<Field(const Field& x, double t)> exact_values(const EvolveConfig& 
 /// serves for the normals of one along these; without a space the formulas are only read.
 Velocity prescribed_velocity(const EvolveConfig& config, const SurfaceSpace* space,
                              const std::string& key = "velocity");
+/// How far the farthest of some points is from a level set, |d|/|grad d|, and where it is.
+struct Distance {
+  double value;
+  Vec3 at;
+};
+Distance farthest_from(const Surface& surface, const Field& x);
+/// Warns, and beyond the longest edge throws InputError, when the nodes are not on a level set that is given
+/// for them at this time.
+void compare_with_nodes(const Surface& surface, const Mesh& mesh, double t, const std::string& where);
+
 /// The positions of the nodes that have it, for a run with these steps. Configuration and space must outlive
 /// them.
 NodalMotion prescribed_motion(const EvolveConfig& config, const SurfaceSpace& space,

@@ -54,9 +54,11 @@ std::vector<Entry> generalised_mean_curvature_entries() {
   entry.parameters = {{Key::number, "power", 2, "of H, not 0"}};
   entry.run = run_generalised_mean_curvature;
   entry.exact_solution = exact_sphere;
-  entry.check = [](const EvolveConfig& config, const std::string&) {
+  entry.check = [](const EvolveConfig& config, const std::string& source) {
+    check_tangential(config, source);
     PowerLaw(config.parameters.number("power"));
   };
+  entry.limits = {"curvature_size", "normal_length", "radius_ratio"};
   entry.starts = {{"nu", "H"}, {"nu", "V"}};
   entry.can_shrink_to_nothing = true;
   entry.cure = smaller_steps_or_even_elements;

@@ -47,7 +47,14 @@ void check_helfrich(const EvolveConfig& config, const std::string& source) {
   const Settings& parameters = config.parameters;
   const std::string where = source + ": parameters: ";
   if (!is_number(config)) spontaneous_curvature(config);
-  if (!parameters.has("reduced_volume")) return;
+  const bool is_constrained =
+      parameters.has_word("constraints", "area") || parameters.has_word("constraints", "volume");
+  if (is_constrained && config.variant.is("tangential", "minimal_deformation"))
+    throw InputError(source +
+                     ": variant: found tangential = \"minimal_deformation\" and prescribed area or volume; "
+                     "expected one of them: \"constraints\": [], or no key tangential");
+  if (!parameters.has("reduced_volume"))
+    return refuse_given(parameters, {"reduction_time"}, source + ": parameters", "without reduced_volume");
   if (!parameters.has_word("constraints", "area") || !parameters.has_word("constraints", "volume"))
     throw InputError(where +
                      "found a reduced_volume without both constraints; expected \"constraints\": "

@@ -93,6 +93,7 @@ std::string help_of(const Entry& entry) {
     text += "      bdf            without \"surface\" 1 by default\n";
   if (entry.time_power != 2)
     text += "      times          in units of L^" + std::to_string(entry.time_power) + "\n";
+  if (!entry.limits.empty()) text += "      limits         " + listed(entry.limits) + "\n";
   return text + lines_of("variant", entry.variant) + lines_of("parameters", entry.parameters) +
          lines_of(entry.formulas) + starts_of(entry);
 }
@@ -138,7 +139,7 @@ explained with each flow.
                 "largest_step": 0.01},        default: no bound
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere, angenent_torus), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
-   "limits": {"curvature_size": 5,            singular: |H| times edge length above this (or 4 times its initial maximum);
+   "limits": {"curvature_size": 5,            those that are listed with the flow, see Flows. Singular: |H| times edge length above this (or 4 times its initial maximum);
               "radius_ratio": 0.01,           radius ratio of an element below this (or the square of the initial minimum; no
               "normal_length": 4},            limit if that minimum is < 0.01); |nu| or 1/|nu| of a flow's nu above this
    "exact": {"u": "exp(-6*t)*x*y"},           a solution by formulas of x, y, z, t: the series has the errors of each step

@@ -125,6 +125,8 @@ void take_history(const JsonReader& whole, const JsonReader& file, Initial& init
 Initial from_nodal_output(const json& description, const JsonReader& whole, const std::string& name) {
   const json content = read_json(name);
   const JsonReader file(content, name);
+  if (file.has("t") && content.at("t").is_array())
+    throw InputError(name + ": a series; expected the file that \"nodal\" of the earlier run names");
   Initial initial{name, file.has("flow") ? file.text("flow") : "", {}, file.number("t"), history_in(file)};
   ReadMesh& start = initial.surface.start;
   std::tie(start.mesh, start.fields) = surface_of(content, name);

@@ -3,6 +3,7 @@
 // motion, or driven by the species.
 #include <algorithm>
 #include <optional>
+#include <set>
 
 #include "experiments/evolve/advice.hpp"
 #include "experiments/evolve/formulas.hpp"
@@ -73,6 +74,24 @@ std::vector<std::vector<std::string>> starts_of_kinetics(const EvolveConfig& con
   return starts;
 }
 
+/// Refuses what has no effect without g, or with the dynamic law.
+void refuse_useless_keys(const EvolveConfig& config, const Kinetics& kinetics, const std::string& source) {
+  // Formulas may name alpha and beta for something of their own.
+  const std::set<std::string> names = names_in_formulas(config);
+  const auto refuse_number = [&](const char* key, const std::string& why) {
+    if (names.count(key) == 0) refuse_given(config.parameters, {key}, source + ": parameters", why);
+  };
+  if (config.variant.is("law", "dynamic")) refuse_number("beta", "with the dynamic law");
+  if (kinetics.g) return;
+  for (const char* key : {"alpha", "beta"}) refuse_number(key, "without g of kinetics");
+  refuse_given(config.variant, {"law"}, source + ": variant", "without g of kinetics");
+  if (config.limits.radius_ratio)
+    throw InputError(
+        source +
+        ": limits: found radius_ratio, which has no effect without g of kinetics; expected no key "
+        "limits");
+}
+
 void check_kinetics(const EvolveConfig& config, const std::string& source) {
   const Kinetics kinetics = kinetics_of(config);
   exact_values(config, concentration_names(kinetics.species()));
@@ -88,6 +107,7 @@ void check_kinetics(const EvolveConfig& config, const std::string& source) {
                      "them");
   if (moves && config.adaptive)
     throw InputError(source + ": a prescribed velocity takes equal steps; expected tau and steps");
+  refuse_useless_keys(config, kinetics, source);
 }
 
 Field initial_concentrations(const EvolveConfig& config, int species) {
@@ -190,6 +210,7 @@ std::vector<Entry> kinetics_entries() {
   entry.formulas = {kinetics_key(), velocity_key(), initial_key({"u1", "u2"})};
   entry.run = run_kinetics;
   entry.check = check_kinetics;
+  entry.limits = {"radius_ratio"};
   entry.own_starts = starts_of_kinetics;
   entry.starts_beside_surface = true;
   entry.can_shrink_to_nothing = true;

@@ -54,7 +54,9 @@ std::vector<Entry> mean_curvature_entries() {
                    {Key::not_negative, "stabilise", 0, "alpha of kll19 §14, 1/time"},
                    reinitialise_key()};
   entry.run = run_mean_curvature;
+  entry.check = check_tangential;
   entry.exact_solution = exact_mean_curvature_solution;
+  entry.limits = {"curvature_size", "normal_length", "radius_ratio"};
   entry.starts = {{"nu", "H"}};
   entry.energy = "area";
   entry.evolves_curvature = entry.can_shrink_to_nothing = entry.is_mean_curvature_flow = true;

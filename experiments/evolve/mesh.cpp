@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/evolve/mesh.hpp"
 
+#include <map>
+#include <set>
+
 #include "solver/error.hpp"
 #include "solver/mesh/curve.hpp"
 #include "solver/mesh/generate.hpp"
@@ -178,13 +181,27 @@ EvolveMesh mesh_of_file(const JsonReader& description, std::optional<int> degree
 }  // namespace
 
 void check_mesh_keys(const JsonReader& description, bool has_surface) {
-  if (description.has("file")) return description.accept_only({"file", "curve", "remesh", "refine"});
-  const bool is_graded = description.has("edge_length") && description.has("grading");
-  if (is_graded) description.accept_only({"edge_length", "grading"});
-  const std::string key =
-      is_graded ? "edge_length" : description.only_key({"file", "edge_length", "subdivisions"});
-  if (!has_surface)
-    throw InputError(description.where() + ": " + key +
+  const std::map<std::string, std::set<std::string>> kinds = {
+      {"file", {"curve", "refine", "remesh"}}, {"edge_length", {"grading"}}, {"subdivisions", {}}};
+  std::set<std::string> known, found, taken;
+  for (const auto& [kind, others] : kinds) {
+    known.insert(kind);
+    known.insert(others.begin(), others.end());
+  }
+  description.accept_only(known);
+  for (const auto& [kind, others] : kinds) {
+    if (!description.has(kind)) continue;
+    found.insert(kind);
+    taken = others;
+    taken.insert(kind);
+  }
+  for (const std::string& key : known)
+    if (found.size() != 1 || (description.has(key) && taken.count(key) == 0))
+      throw InputError(description.where() + ": found " + description.found() +
+                       "; expected edge_length (with it grading), file (with it curve, refine, remesh) or "
+                       "subdivisions");
+  if (!has_surface && !description.has("file"))
+    throw InputError(description.where() + ": " + *found.begin() +
                      " needs a \"surface\"; expected one, or a mesh with the key file");
 }
 

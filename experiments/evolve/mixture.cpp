@@ -40,6 +40,11 @@ void check_mixture(const EvolveConfig& config, const std::string& source) {
   mobility_of(config);
   exact_values(config, {"u", "w"});
   prescribed_velocity(config, nullptr, "tangential");
+  if (config.formulas.contains("tangential") && !config.formulas.at("tangential").is_array())
+    throw InputError(
+        source +
+        ": tangential: found a velocity along the normals, which moves nothing along the surface; "
+        "expected three formulas in [..]");
   if (prescribed_velocity(config, nullptr) && config.adaptive)
     throw InputError(source + ": a prescribed velocity takes equal steps; expected tau and steps");
 }
@@ -69,6 +74,11 @@ void run_mixture(const Run& run) {
   const CahnHilliardState start = u_w.size() > 0
                                       ? cahn_hilliard_state(run.space, t0, x, u_w.col(0), u_w.col(1))
                                       : cahn_hilliard_start(run.space, mixture, epsilon, t0, x, u);
+  if (config.variant.truth("theta") && u_w.size() == 0 && !config.history.is_object())
+    throw InputError(
+        config.source +
+        ": variant: theta is 0, since w comes from the second equation; expected initial values of "
+        "w, too, or no theta");
   Field theta;
   if (config.variant.truth("theta")) theta = cahn_hilliard_theta(run.space, mixture, epsilon, start);
   const double well = config.formulas.contains("potential") ? 0 : 1;  // where the double well is lowest
@@ -95,6 +105,7 @@ std::vector<Entry> mixture_entries() {
   FormulaKey tangential = velocity_key();
   tangential.name = "tangential";
   tangential.example = "[\"0\", \"z*t\", \"-y*t\"]";
+  tangential.schema = tangential.schema.at("anyOf").at(0);
   tangential.help = "the part of the velocity that the nodes have, but not the material; default: none";
   entry.formulas = {
       {"potential", "\"(u^2-1)^2/4\"", "F(u), double-well by default", formula},

@@ -22,17 +22,23 @@ const std::vector<Entry>& entries() {
 
 const Entry& entry_named(const std::string& flow, const std::string& problem, const std::string& source) {
   std::set<std::string> flows, problems;
+  std::string flow_of_problem;
   for (const Entry& entry : entries()) {
     flows.insert(entry.flow);
+    if (!flow.empty() && entry.problem == flow) flow_of_problem = entry.flow;
     if (entry.flow != flow) continue;
     if (problem.empty() || problem == entry.problem) return entry;
     problems.insert(entry.problem);
   }
+  if (!flow_of_problem.empty())
+    throw InputError(source + ": found flow = \"" + flow + "\"; expected \"flow\": \"" + flow_of_problem +
+                     "\", \"problem\": \"" + flow + "\"");
   if (flows.count(flow) == 0)
-    throw InputError(source + ": found flow = \"" + flow + "\"; expected one of " + listed(flows));
+    throw InputError(source + ": found flow = \"" + flow + "\"; expected one of " + listed_for(flow, flows));
   if (problems == std::set<std::string>{""})
     throw InputError(source + ": flow " + flow + " has no problems; expected no key problem");
-  throw InputError(source + ": found problem = \"" + problem + "\"; expected one of " + listed(problems));
+  throw InputError(source + ": found problem = \"" + problem + "\"; expected one of " +
+                   listed_for(problem, problems));
 }
 
 }  // namespace esfem

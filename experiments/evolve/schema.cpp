@@ -86,6 +86,10 @@ json rule_of(const Entry& entry, bool is_default) {
     is["properties"]["problem"] = {{"const", entry.problem}};
     if (!is_default) is["required"].push_back("problem");
   }
+  json limits = json::object();
+  for (const char* key : {"curvature_size", "normal_length", "radius_ratio"})
+    if (entry.limits.count(key) == 0) limits[key] = false;
+  if (!limits.empty()) then["limits"] = {{"properties", limits}};
   if (!entry.takes_adaptive_steps) then["adaptive"] = false;
   json required = json::array();
   for (const Entry& other : entries())

@@ -27,7 +27,7 @@ json known_word(const JsonReader& reader, const Key& key) {
   std::set<std::string> known(key.words.begin(), key.words.end());
   if (key.kind == Key::truth_or_word) known.insert({"true", "false"});
   throw InputError(reader.where() + ": found " + key.name + " = \"" + value + "\"; expected one of " +
-                   listed(known));
+                   listed_for(value, known));
 }
 
 json known_words(const JsonReader& reader, const Key& key) {
@@ -83,6 +83,19 @@ Settings::Settings(const json& given, const std::vector<Key>& keys, const std::s
       defaults_.push_back(key);
     }
   }
+}
+
+bool Settings::is_given(const std::string& key) const {
+  return has(key) && std::none_of(defaults_.begin(), defaults_.end(),
+                                  [&](const Key& other) { return other.name == key; });
+}
+
+void refuse_given(const Settings& settings, const std::vector<std::string>& keys, const std::string& where,
+                  const std::string& why) {
+  for (const std::string& key : keys)
+    if (settings.is_given(key))
+      throw InputError(where + ": found " + key + ", which has no effect " + why + "; expected no key " +
+                       key);
 }
 
 bool Settings::has_word(const std::string& key, const char* word) const {

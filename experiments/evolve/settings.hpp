@@ -42,6 +42,8 @@ class Settings {
            bool takes_any_number = false);
 
   bool has(const std::string& key) const { return values_.contains(key); }
+  /// Whether it has a value that is no default.
+  bool is_given(const std::string& key) const;
   double number(const std::string& key) const { return values_.at(key).get<double>(); }
   int integer(const std::string& key) const { return values_.at(key).get<int>(); }
   bool truth(const std::string& key) const { return values_.at(key).get<bool>(); }
@@ -63,5 +65,9 @@ class Settings {
   nlohmann::json values_ = nlohmann::json::object();
   std::vector<Key> defaults_;  ///< the keys whose default was taken
 };
+
+/// Throws InputError, headed by `where`, for one of these keys that is given, since it has no effect, `why`.
+void refuse_given(const Settings& settings, const std::vector<std::string>& keys, const std::string& where,
+                  const std::string& why);
 
 }  // namespace esfem

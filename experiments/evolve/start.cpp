@@ -28,9 +28,9 @@ bool has_all(const EvolveConfig& config, const Names& names) {
                      [&](const std::string& name) { return find(config.fields, name); });
 }
 
-/// The key that names the file of the nodal values.
-const char* key_of(const EvolveConfig& config) {
-  return config.initial_file.empty() ? "mesh" : "initial";
+/// The file of the nodal values.
+std::string file_of(const EvolveConfig& config) {
+  return config.initial_file.empty() ? config.mesh_origin.source : config.initial_file;
 }
 
 /// The node under the number that the mesh file has for it.
@@ -42,12 +42,12 @@ std::string node_named(const EvolveConfig& config, int i) {
 void check_values(const EvolveConfig& config, const std::string& name, const Field& values) {
   const bool is_vector = name == "nu" || name == "z" || name == "v";
   if (values.cols() != (is_vector ? 3 : 1))
-    throw InputError(format("%s: %s of the file has %d components, %d expected", key_of(config), name.c_str(),
+    throw InputError(format("%s: %s has %d components, %d expected", file_of(config).c_str(), name.c_str(),
                             int(values.cols()), is_vector ? 3 : 1));
   for (int i = 0; i < values.rows(); ++i)
     if (!values.row(i).allFinite())
-      throw InputError(std::string(key_of(config)) + ": " + name + " of the file has no finite value at " +
-                       node_named(config, i) + ", one at each node expected");
+      throw InputError(file_of(config) + ": " + name + " has no finite value at " + node_named(config, i) +
+                       ", one at each node expected");
 }
 
 /// Normals of the file have about unit length and point outward, as those of the elements do.
@@ -55,7 +55,7 @@ void check_normals(const EvolveConfig& config, const Field& nu) {
   const Mesh& mesh = config.mesh;
   for (int i = 0; i < nu.rows(); ++i)
     if (const double length = nu.row(i).norm(); !(length > 0.5 && length < 2))
-      throw InputError(format("%s: nu of the file has length %g at ", key_of(config), length) +
+      throw InputError(format("%s: nu has length %g at ", file_of(config).c_str(), length) +
                        node_named(config, i) + ", 1 expected");
   double along = 0, area = 0;
   for (const auto& element : mesh.elements.rowwise()) {
@@ -66,9 +66,9 @@ void check_normals(const EvolveConfig& config, const Field& nu) {
   }
   if (!(along > 0.5 * area))
     throw InputError(
-        format("%s: nu of the file is not the outward normal, the mean of nu . n over the "
+        format("%s: nu is not the outward normal, the mean of nu . n over the "
                "surface is %.3g, about 1 expected",
-               key_of(config), along / area));
+               file_of(config).c_str(), along / area));
 }
 
 }  // namespace

@@ -40,6 +40,11 @@ double StopRule::speed(const RunRecorder::Surface& surface) const {
 }
 
 std::string StopRule::reason(const RunRecorder& recorder, int n) const {
+  const std::string reason = reason_of_step(recorder, n);
+  return !reason.empty() && n == 1 ? "in the first step: " + reason : reason;
+}
+
+std::string StopRule::reason_of_step(const RunRecorder& recorder, int n) const {
   const auto& stop = config_.stop;
   if (n == 0) return "";
   const std::string at = format("at t = %g (step %d)", recorder.newest().t, n);

@@ -16,11 +16,14 @@ class StopRule {
 
   /// Before a step is recorded: keeps what the rate of change of u needs.
   void look_before(const RunRecorder& recorder);
-  /// Why the run has come to its end with its newest step n; "" when it goes on, and at n = 0.
+  /// Why the run has come to its end with its newest step n, and that this is its first, which may say
+  /// little;
+  /// "" when it goes on, and at n = 0.
   std::string reason(const RunRecorder& recorder, int n) const;
   bool is_time_over() const;
 
  private:
+  std::string reason_of_step(const RunRecorder& recorder, int n) const;
   double speed(const RunRecorder::Surface& surface) const;
 
   const EvolveConfig& config_;

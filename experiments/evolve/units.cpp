@@ -32,7 +32,7 @@ void scale_defaults(const JsonReader& reader, EvolveConfig& config) {
           std::clamp(grid.first_step, 1e-12 * grid.end_time, std::max(1e-12 * grid.end_time, 0.1 * span));
     if (grid.largest_step > 0) grid.first_step = std::min(grid.first_step, grid.largest_step);
   }
-  check_steps(grid);
+  headed(reader.where() + ": adaptive", [&] { check_steps(grid); });
 }
 
 }  // namespace esfem

@@ -82,6 +82,7 @@ Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, 
     run_flow(flow, run, start.state);
   };
   entry.check = check_theta;
+  entry.limits = {"curvature_size", "normal_length", "radius_ratio"};
   entry.time_power = 4;
   entry.starts = {{"nu", "H"}};
   if (starts_from_V) entry.starts.push_back({"nu", "H", "V", "z"});

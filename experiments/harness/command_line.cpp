@@ -9,6 +9,7 @@
 #include <regex>
 #include <sstream>
 
+#include "solver/did_you_mean.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
@@ -20,6 +21,16 @@ std::string accepted_options(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options())
     names += (names.empty() ? "" : " ") + option->get_name(/*positional=*/option->get_positional());
   return names;
+}
+
+/// The accepted options, and the one that was probably meant by an unknown one.
+std::string accepted_for_unknown(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (const std::string& text : app.remaining())
+    if (text[0] == '-') return accepted_options(app) + did_you_mean(text.substr(0, text.find('=')), names);
+  return accepted_options(app);
 }
 
 std::string one_line(std::string text) {
@@ -150,12 +161,12 @@ bool CommandLine::parse(int argc, const char* const* argv) {
     std::cout << app.help();
     return false;
   } catch (const CLI::ExtrasError& error) {
-    throw InputError(one_line(error.what()) + "; accepted: " + accepted_options(app) + " (see --help)");
+    throw InputError(one_line(error.what()) + "; accepted: " + accepted_for_unknown(app) + " (see --help)");
   } catch (const CLI::ParseError& error) {
     // A missing argument is often one that was parsed as an unknown option.
     const std::vector<std::string> unknown = app.remaining();
     const std::string more =
-        unknown.empty() ? "" : "; unknown: " + unknown.front() + "; accepted: " + accepted_options(app);
+        unknown.empty() ? "" : "; unknown: " + unknown.front() + "; accepted: " + accepted_for_unknown(app);
     throw InputError(one_line(error.what()) + more + " (see --help)");
   }
   return true;

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "solver/constants.hpp"
+#include "solver/did_you_mean.hpp"
 #include "solver/error.hpp"
 #include "solver/formulas/ginac.hpp"
 
@@ -103,6 +104,7 @@ class Translation {
   }
 
   void translate_sign(char c) {
+    if (text_.compare(at_, 2, "**") == 0) fail(at_ + 1, "found \"**\"; powers are written with ^, as in x^2");
     if (c == ')' && !result_.empty() && result_.back() == '(')
       fail(at_ + 1, "nothing stands between ( and )");
     emit(std::string(1, c), at_);
@@ -117,7 +119,9 @@ class Translation {
     const bool is_call = at_ < text_.size() && text_[at_] == '(';
     const FormulaFunction* const function = formula_function(name);
     if (is_call || function) {
-      if (!function) fail(start + 1, "unknown function \"" + name + "\"; known: " + formula_functions());
+      if (!function)
+        fail(start + 1, "unknown function \"" + name + "\"; known: " + formula_functions() +
+                            did_you_mean(name, formula_function_names()));
       if (!is_call) fail(start + 1, "the function " + name + " needs arguments in parentheses");
       return emit(function->of_ginac, start);
     }
@@ -134,7 +138,7 @@ class Translation {
       for (const auto& [other, value] : names_.constants) known.push_back(other);
       for (const auto& [other, text] : names_.definitions) known.push_back(other);
       known.push_back("pi");
-      fail(start + 1, "unknown name \"" + name + "\"; known: " + joined(known));
+      fail(start + 1, "unknown name \"" + name + "\"; known: " + joined(known) + did_you_mean(name, known));
     }
     emit("v_" + name, start);
   }

@@ -92,6 +92,12 @@ std::string formula_functions() {
   return list;
 }
 
+std::vector<std::string> formula_function_names() {
+  std::vector<std::string> names;
+  for (const FormulaFunction& function : functions()) names.push_back(function.name);
+  return names;
+}
+
 const FormulaFunction* formula_function(const std::string& name) {
   for (const FormulaFunction& function : functions())
     if (function.name == name) return &function;

@@ -34,6 +34,8 @@ const FormulaFunction* formula_function(const std::string& name);
 /// That of GiNaC. Throws InputError for one that formulas do not have.
 const FormulaFunction& formula_function(const GiNaC::function& function);
 
+std::vector<std::string> formula_function_names();
+
 /// The functions of formulas for GiNaC's parser.
 const GiNaC::prototype_table& formula_prototypes();
 

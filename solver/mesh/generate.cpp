@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <queue>
 #include <utility>
+#include <vector>
 
 #include "solver/error.hpp"
 #include "solver/mesh/delaunay.hpp"
@@ -32,7 +34,26 @@ void check_resolution(const Mesh& mesh, const Surface& surface, const SizeFuncti
   }
 }
 
+int component_count(const Mesh& mesh) {
+  std::vector<int> parent(mesh.nodes.rows());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto root = [&](int node) {
+    while (parent[node] != node) node = parent[node] = parent[parent[node]];
+    return node;
+  };
+  for (Eigen::Index t = 0; t < mesh.elements.rows(); ++t)
+    for (int i : {1, 2}) parent[root(mesh.elements(t, i))] = root(mesh.elements(t, 0));
+  int count = 0;
+  for (int node = 0; node < int(parent.size()); ++node) count += parent[node] == node;
+  return count;
+}
+
 void check_topology(const Mesh& mesh, const Surface& surface) {
+  if (const int count = component_count(mesh); mesh.elements.rows() > 0 && count < surface.components)
+    throw InputError(
+        format("%s: the surface has %d components, of which %d got a mesh; expected a box around "
+               "one of them alone, or a mesh file with all of them",
+               surface.name.c_str(), surface.components, count));
   const int characteristic = euler_characteristic(mesh);
   if (mesh.elements.rows() > 0 && characteristic == surface.euler_characteristic) return;
   throw NumericsError(
@@ -174,10 +195,22 @@ void check_positive(double edge_length, const Surface& surface) {
         format("%s: edge length %g, expected a positive number", surface.name.c_str(), edge_length));
 }
 
+/// Refuses an edge length that is a mistake in the unit, say.
+void check_count(double edge_length, const Surface& surface) {
+  // Equilateral triangles on the bounding sphere, which most surfaces do not fill.
+  const double most = 1e8, ratio = surface.bounding_radius / edge_length, nodes = 14.5 * ratio * ratio;
+  if (nodes > most)
+    throw InputError(
+        format("%s: edge length %g on a surface of radius %g makes about %.1g nodes; expected at "
+               "most %g",
+               surface.name.c_str(), edge_length, surface.bounding_radius, nodes, most));
+}
+
 }  // namespace
 
 Mesh generate_mesh(const Surface& surface, double edge_length) {
   check_positive(edge_length, surface);
+  check_count(edge_length, surface);
   const double largest = surface.smallest_curvature_radius;
   if (edge_length > largest * (1 + 1e-12))
     throw InputError(
@@ -198,6 +231,7 @@ Mesh generate_mesh(const Surface& surface, const std::function<double(const Vec3
 
 Mesh generate_mesh(const Surface& surface, double edge_length, double grading) {
   check_positive(edge_length, surface);
+  check_count(edge_length, surface);
   if (!(grading > 0 && grading <= 1))
     throw InputError(format("%s: grading %g, expected a number greater than 0 and at most 1",
                             surface.name.c_str(), grading));

@@ -48,6 +48,8 @@ Parser parser_of(const std::string& file) {
                                                     {"ply", parse_ply}, {"stl", parse_stl}};
   for (const auto& [known, parser] : parsers)
     if (extension == known) return parser;
+  if (extension == "pvd")
+    throw InputError(file + ": a list of snapshots; expected one of the .vtu files beside it that it names");
   throw InputError(
       format("%s: unknown mesh format '%s', .msh, .off, .obj, .ply, .stl or .vtu (of evolve) expected; "
              "plots/convert_mesh.py IN OUT.msh converts what meshio reads (VTK, VTU, XDMF, ...)",

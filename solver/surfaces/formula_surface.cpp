@@ -125,11 +125,11 @@ class SignGrid {
   Vec3 point(const Index& index) const {
     return low_ + Vec3(index[0] * step_[0], index[1] * step_[1], index[2] * step_[2]);
   }
-  bool is_inside(const Index& index) const {
-    return is_inside_[(std::size_t(index[0]) * points_[1] + index[1]) * points_[2] + index[2]];
-  }
+  bool is_inside(const Index& index) const { return is_inside_[number(index)]; }
   bool contains(const Index& index) const {
-    return index[0] < points_[0] && index[1] < points_[1] && index[2] < points_[2];
+    for (int i = 0; i < 3; ++i)
+      if (index[i] < 0 || index[i] >= points_[i]) return false;
+    return true;
   }
   bool has_inside() const {
     return std::find(is_inside_.begin(), is_inside_.end(), true) != is_inside_.end();
@@ -158,7 +158,38 @@ class SignGrid {
     return sum;
   }
 
+  /// Of the same surface: there is one more part of the box inside or outside than it has components.
+  int components() const {
+    std::vector<bool> reached(is_inside_.size());
+    std::vector<Index> open;
+    int parts = 0;
+    const auto reach = [&](const Index& index) {
+      reached[number(index)] = true;
+      open.push_back(index);
+    };
+    visit([&](const Index& start) {
+      if (reached[number(start)]) return;
+      ++parts;
+      reach(start);
+      while (!open.empty()) {
+        const Index at = open.back();
+        open.pop_back();
+        for (int moved = 1; moved < 8; ++moved)
+          for (int sign : {-1, 1}) {
+            Index next = at;
+            for (int i = 0; i < 3; ++i) next[i] += moved & (1 << i) ? sign : 0;
+            if (contains(next) && !reached[number(next)] && is_inside(next) == is_inside(at)) reach(next);
+          }
+      }
+    });
+    return parts - 1;
+  }
+
  private:
+  std::size_t number(const Index& index) const {
+    return (std::size_t(index[0]) * points_[1] + index[1]) * points_[2] + index[2];
+  }
+
   /// Whether the cube from a corner on has points inside and outside.
   bool is_cut(const Index& corner) const {
     if (!contains({corner[0] + 1, corner[1] + 1, corner[2] + 1})) return false;  // all is outside there
@@ -302,12 +333,13 @@ void check_box(const Box& box, const std::string& where) {
 }
 
 void check_signs(const SignGrid& grid, const std::string& where) {
-  bool is_inside_everywhere = true;
+  bool is_inside_everywhere = true, is_outside_on_sides = false;
   std::optional<Vec3> open;
   grid.visit([&](const SignGrid::Index& index) {
-    const bool is_inside = grid.is_inside(index);
+    const bool is_inside = grid.is_inside(index), is_on_side = grid.is_on_side(index);
     is_inside_everywhere = is_inside_everywhere && is_inside;
-    if (is_inside && !open && grid.is_on_side(index)) open = grid.point(index);
+    is_outside_on_sides = is_outside_on_sides || (is_on_side && !is_inside);
+    if (is_inside && !open && is_on_side) open = grid.point(index);
   });
   if (!grid.has_inside())
     throw InputError(where +
@@ -317,6 +349,10 @@ void check_signs(const SignGrid& grid, const std::string& where) {
     throw InputError(where +
                      ": the level set has no zero in the box, it is negative there; expected d > 0 "
                      "outside the surface");
+  if (open && !is_outside_on_sides)
+    throw InputError(where +
+                     ": the level set is negative on all sides of the box; expected it negative inside the "
+                     "surface and positive outside: change its sign");
   if (open)
     throw InputError(where + format(": the surface is open at the box: d < 0 at (%g, %g, %g); expected a box "
                                     "around the surface, with d > 0 on its sides",
@@ -341,13 +377,15 @@ SignGrid resolving_grid(const Formula& d, const Box& box, const std::string& whe
 }  // namespace
 
 Surface formula_surface(const std::string& level_set, const Box& box,
-                        const std::map<std::string, double>& constants, const std::string& where) {
-  const Formula d(level_set, {{"x", "y", "z"}, constants}, where);
+                        const std::map<std::string, double>& constants, const std::string& where,
+                        const std::map<std::string, std::string>& definitions) {
+  const Formula d(level_set, {{"x", "y", "z"}, constants, definitions}, where);
   check_box(box, where);
   try {
     const SignGrid grid = resolving_grid(d, box, where);
     Surface surface =
         make_surface("level set", FormulaLevelSet(d), 0, 1, grid.euler_characteristic(), constants);
+    surface.components = grid.components();
     const std::vector<Vec3> points = surface_points(surface, grid, where);
     Vec3 low = points[0], high = points[0];
     for (const Vec3& y : points) {

@@ -13,7 +13,8 @@ struct Box {
   Vec3 low, high;
 };
 
-/// The surface {d = 0} in a box, for a formula d(x, y, z) with d < 0 inside. Derivatives up to the fourth are
+/// The surface {d = 0} in a box, for a formula d(x, y, z) with d < 0 inside, of constants and definitions.
+/// Derivatives up to the fourth are
 /// symbolic. Bounding ball, Euler characteristic and the smallest radius of curvature are found on a grid: on
 /// one so fine that a finer one has the same topology, and for the radius by a search on the surface from the
 /// grid's best points. Throws InputError, headed by `where`, for a formula that cannot be read or has no
@@ -21,6 +22,7 @@ struct Box {
 /// crosses itself, or is too fine for the grid.
 Surface formula_surface(const std::string& level_set, const Box& box,
                         const std::map<std::string, double>& constants = {},
-                        const std::string& where = "level set");
+                        const std::string& where = "level set",
+                        const std::map<std::string, std::string>& definitions = {});
 
 }  // namespace esfem

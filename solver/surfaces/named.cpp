@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "solver/did_you_mean.hpp"
 #include "solver/error.hpp"
 #include "solver/surfaces/angenent_torus.hpp"
 #include "solver/surfaces/formula_surface.hpp"
@@ -14,6 +15,12 @@ namespace esfem {
 namespace {
 
 using nlohmann::json;
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
 
 /// A list of `count` positive numbers from a JSON number or array.
 std::vector<double> positive_numbers(const json& value, size_t count, const std::string& what) {
@@ -86,11 +93,12 @@ Vec3 corner_of(const json& box, int which) {
 }
 
 /// {"level_set": "x^2 + y^2 + z^2 - R^2", "box": [[-2, -2, -2], [2, 2, 2]], "parameters": {"R": 1}}
-Surface surface_of_formula(const json& description) {
+Surface surface_of_formula(const json& description, FormulaNames names) {
   for (const auto& item : description.items())
     if (item.key() != "level_set" && item.key() != "box" && item.key() != "parameters")
       throw InputError("surface: unknown key \"" + item.key() +
-                       "\" beside level_set; known: box, level_set, parameters");
+                       "\" beside level_set; known: box, level_set, parameters" +
+                       did_you_mean(item.key(), {"box", "level_set", "parameters"}));
   const json &formula = description.at("level_set"),
              parameters = description.value("parameters", json::object());
   if (!formula.is_string())
@@ -100,7 +108,6 @@ Surface surface_of_formula(const json& description) {
     throw InputError(
         "surface: a level_set needs \"box\": [[x, y, z], [x, y, z]], two corners of a box around "
         "the surface");
-  std::map<std::string, double> constants;
   if (!parameters.is_object())
     throw InputError("surface: found parameters = " + parameters.dump() +
                      "; expected {\"name\": number, ..}");
@@ -108,22 +115,27 @@ Surface surface_of_formula(const json& description) {
     if (!item.value().is_number())
       throw InputError("surface: parameters: found " + item.key() + " = " + item.value().dump() +
                        "; expected a number");
-    constants[item.key()] = item.value();
+    names.constants[item.key()] = item.value();
+    names.definitions.erase(item.key());
   }
   const json& box = description.at("box");
   try {
-    return formula_surface(formula, {corner_of(box, 0), corner_of(box, 1)}, constants, "surface: level_set");
+    return formula_surface(formula, {corner_of(box, 0), corner_of(box, 1)}, names.constants,
+                           "surface: level_set", names.definitions);
   } catch (const InputError& error) {
     const std::string message = error.what();
     if (message.find("unknown name") == std::string::npos) throw;
-    throw InputError(message + "; numbers that it names stand in \"parameters\" of the surface");
+    throw InputError(message +
+                     "; numbers that it names stand in \"parameters\", of the surface or "
+                     "of the configuration, parts of formulas in \"definitions\"");
   }
 }
 
 }  // namespace
 
-Surface named_surface(const json& description) {
-  if (description.is_object() && description.contains("level_set")) return surface_of_formula(description);
+Surface named_surface(const json& description, const FormulaNames& names) {
+  if (description.is_object() && description.contains("level_set"))
+    return surface_of_formula(description, names);
   const std::string name = description.is_object() ? description.value("name", json()).dump() : "";
   for (const Entry& entry : entries()) {
     if (name != json(entry.name).dump()) continue;
@@ -132,9 +144,10 @@ Surface named_surface(const json& description) {
       const bool known = key == "name" || std::any_of(entry.defaults.begin(), entry.defaults.end(),
                                                       [&](const auto& p) { return p.first == key; });
       if (known) continue;
-      std::string keys = "name";
-      for (const auto& p : entry.defaults) keys += ", " + p.first;
-      throw InputError("surface: unknown key \"" + key + "\" for " + entry.name + "; known: " + keys);
+      std::vector<std::string> keys = {"name"};
+      for (const auto& p : entry.defaults) keys.push_back(p.first);
+      throw InputError("surface: unknown key \"" + key + "\" for " + entry.name + "; known: " + joined(keys) +
+                       did_you_mean(key, keys));
     }
     std::vector<std::vector<double>> parameters;
     for (const auto& [key, value] : entry.defaults) {
@@ -143,10 +156,12 @@ Surface named_surface(const json& description) {
     }
     return entry.make(parameters);
   }
-  std::string names;
-  for (const Entry& entry : entries()) names += (names.empty() ? "" : ", ") + entry.name;
+  std::vector<std::string> known;
+  for (const Entry& entry : entries()) known.push_back(entry.name);
+  const bool has_name = description.is_object() && description.value("name", json()).is_string();
   throw InputError("surface: " + description.dump() + " names no surface; expected {\"name\": one of " +
-                   names + ", ...} or {\"level_set\": a formula, \"box\": ..}");
+                   joined(known) + ", ...} or {\"level_set\": a formula, \"box\": ..}" +
+                   (has_name ? did_you_mean(description.at("name"), known) : ""));
 }
 
 json named_surface_defaults() {
@@ -167,7 +182,10 @@ std::string named_surfaces_help() {
   }
   text +=
       "  \"level_set\": \"x^2 + y^2 + z^2/c^2 - 1\", \"box\": [[-2, -2, -2], [2, 2, 2]], \"parameters\": "
-      "{\"c\": 0.6}, instead of a name: {d = 0} in a box, for a formula d < 0 inside\n";
+      "{\"c\": 0.6}, instead of a name: {d = 0} in a box, for a formula d < 0 inside;\n"
+      "      it may name \"definitions\" and given numbers of \"parameters\" of the configuration, too; of "
+      "several "
+      "components the\n      box contains one\n";
   return text;
 }
 

@@ -54,6 +54,7 @@ struct Surface {
   /// finite where it fails.
   std::function<SurfacePoints(const Pack (&x)[3])> own_closest_points = {};
   Vec3 centre = Vec3::Zero();  ///< of the bounding ball
+  int components = 1;
 
   /// Outward unit normal of the level set through y. Pointwise; y need not lie on the surface.
   Vec3 normal(const Vec3& y) const;

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "solver/error.hpp"
+#include "solver/did_you_mean.hpp"
 
 namespace esfem {
 
@@ -15,6 +15,10 @@ std::string listed(const std::set<std::string>& names) {
   std::string list;
   for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
   return list;
+}
+
+std::string listed_for(const std::string& unknown, const std::set<std::string>& known) {
+  return listed(known) + did_you_mean(unknown, {known.begin(), known.end()});
 }
 
 JsonReader::JsonReader(const Json& object, std::string where) : json_(object), where_(std::move(where)) {
@@ -88,7 +92,8 @@ const Json& JsonReader::array(const std::string& key) const {
 void JsonReader::accept_only(const std::set<std::string>& known) const {
   for (const auto& item : json_.items())
     if (known.count(item.key()) == 0)
-      throw InputError(where_ + ": unknown key '" + item.key() + "'; known are " + listed(known));
+      throw InputError(where_ + ": unknown key '" + item.key() + "'; known are " +
+                       listed_for(item.key(), known));
 }
 
 std::string JsonReader::only_key(const std::set<std::string>& known) const {

@@ -5,10 +5,25 @@
 #include <set>
 #include <string>
 
+#include "solver/error.hpp"
+
 namespace esfem {
 
 /// "a, b, c".
 std::string listed(const std::set<std::string>& names);
+/// The same for a message on an unknown name, with the one that was probably meant (did_you_mean).
+std::string listed_for(const std::string& unknown, const std::set<std::string>& known);
+
+/// What `make` makes; the message of an InputError is headed by `where`, for parts that do not know their
+/// file.
+template <class Make>
+auto headed(const std::string& where, const Make& make) {
+  try {
+    return make();
+  } catch (const InputError& error) {
+    throw InputError(where + ": " + error.what());
+  }
+}
 
 /// Reads a JSON object key by key; every error is an InputError headed by `where` that names the key, what
 /// was expected and what was found. The JSON must outlive the reader.
@@ -39,6 +54,8 @@ class JsonReader {
   std::string only_key(const std::set<std::string>& known) const;
   [[noreturn]] void wrong_type(const std::string& key, const char* expected,
                                const nlohmann::json& found) const;
+  /// The object as text, for messages.
+  std::string found() const { return json_.dump(); }
   const std::string& where() const { return where_; }
 
  private:

@@ -118,6 +118,8 @@ TEST(Formula, DerivativesOfPowersAreFiniteAtZero) {
 TEST(Formula, PointsAtTheColumnOfAnError) {
   const std::pair<const char*, const char*> cases[] = {
       {"x+*y", "kinetics: f: \"x+*y\": column 3: found \"*\"; expected a number, a name or ("},
+      {"x**2", "column 2: found \"**\"; powers are written with ^, as in x^2"},
+      {"1 + Sin(x)", "did you mean \"sin\"?"},
       {"x y", "column 3: found \"y\"; expected an operator or the end"},
       {"(x", "column 3: found the end; expected )"},
       {"x)", "column 2: found \")\"; expected an operator"},

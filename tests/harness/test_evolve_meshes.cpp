@@ -120,7 +120,7 @@ TEST_F(EvolveMeshes, RefusesWhatMakesNoSense) {
       {{{"file", flat}, {"remesh", 0}}, none, "flat.msh: edge length 0"},
       {{{"file", flat}, {"remesh", 1e-9}}, none, "ten million"},
       {{{"edge_length", 0.3}, {"remesh", 0.1}}, sphere, "remesh"},
-      {{{"file", flat}, {"subdivisions", 1}}, sphere, "known are curve, file, refine, remesh"},
+      {{{"file", flat}, {"subdivisions", 1}}, sphere, "expected edge_length (with it grading), file (with"},
   };
   for (const auto& [mesh, changes, expected] : bad) {
     EXPECT_EQ(run(config(mesh, changes)), exit_usage) << mesh;

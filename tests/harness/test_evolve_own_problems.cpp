@@ -12,7 +12,7 @@ namespace esfem::test_evolve_own_problems {
 namespace {
 
 using nlohmann::json;
-using testing::AllOf, testing::HasSubstr;
+using testing::AllOf, testing::HasSubstr, testing::Not;
 
 class OwnProblems : public EvolveProgram {
  protected:
@@ -400,6 +400,130 @@ TEST_F(OwnProblems, MixturesThatBlowUpEndAsSingular) {
                       {"tau", 0.2},
                       {"steps", 50},
                       {"parameters", {{"epsilon", 0.02}}}}));
+}
+
+/// Heat on the unit sphere, linear elements with edges of about 0.55.
+json heat() {
+  return {{"flow", "coupled_diffusion"},
+          {"problem", "kinetics"},
+          {"degree", 1},
+          {"bdf", 1},
+          {"kinetics", {{"f", {"0"}}, {"diffusion", {1}}}},
+          {"initial", {{"u", "x"}}}};
+}
+
+TEST_F(OwnProblems, NodesBelongToTheLevelSetThatMovesThem) {
+  const auto moved_by = [&](const char* level_set) {
+    return with(heat(), {{"velocity", {{"level_set", level_set}}}});
+  };
+  EXPECT_EQ(run(moved_by("x^2+y^2+z^2-(1+t)^2")), exit_done);
+  EXPECT_THAT(message, Not(HasSubstr("level set")));
+  EXPECT_THAT(
+      refusal(moved_by("x^2+y^2+z^2-(3+t)^2")),
+      AllOf(HasSubstr("config.json: velocity: nodes are not on the level set at t = 0: the farthest"),
+            HasSubstr("is at a distance of about 4 (longest edge: 0.6"), HasSubstr("expected zeros")));
+  EXPECT_EQ(run(moved_by("x^2+y^2+z^2-(1.1+t)^2")), exit_done);
+  EXPECT_THAT(message, HasSubstr("is at a distance of about 0.1 (longest edge"));
+
+  const auto compared_with = [&](const char* level_set, const json& more = json::object()) {
+    json changes = heat();
+    changes["exact"] = {{"u", "x"}, {"level_set", level_set}};
+    return with(changes, more);
+  };
+  EXPECT_EQ(run(compared_with("x^2+y^2+z^2-1")), exit_done);
+  EXPECT_THAT(message, Not(HasSubstr("surface:")));
+  EXPECT_THAT(refusal(compared_with("x^2+y^2+z^2-9")), HasSubstr("exact: nodes are not on the level set"));
+  // Nodes that leave the exact surface on their way.
+  EXPECT_EQ(run(compared_with("x^2+y^2+z^2-1", {{"velocity", {"x", "y", "z"}}, {"tau", 0.3}})), exit_done);
+  EXPECT_THAT(message, AllOf(HasSubstr("exact: at t = 0.6 the nodes have left the exact surface"),
+                             HasSubstr("lifted errors mean little")));
+}
+
+TEST_F(OwnProblems, KeysWithoutEffectAreRefused) {
+  const auto useless = [&](const json& problem, const json& more, const char* what) {
+    EXPECT_THAT(refusal(with(problem, more)), AllOf(HasSubstr("config.json: "), HasSubstr(what))) << more;
+  };
+  useless(heat(), {{"variant", {{"law", "dynamic"}}}}, "found law, which has no effect without g");
+  useless(heat(), {{"parameters", {{"alpha", 2}}}}, "found alpha, which has no effect without g");
+  useless(heat(), {{"parameters", {{"beta", 2}}}}, "found beta, which has no effect without g");
+  useless(heat(), {{"limits", {{"radius_ratio", 0.1}}}}, "found radius_ratio, which has no effect without g");
+  useless(heat(), {{"limits", {{"normal_length", 2}}}},
+          "found normal_length, which problem kinetics does not look at; expected radius_ratio");
+  useless(heat(), {{"stop", {{"area", 0.5}}}}, "found area, but the surface is at rest");
+  EXPECT_EQ(run(with(heat(), {{"parameters", {{"alpha", 2}}}, {"kinetics", {{"f", {"-alpha*u"}}}}})),
+            exit_done)
+      << "a formula may name alpha for something of its own; " << message;
+  const json driven = with(heat(), {{"kinetics", {{"g", "u"}}}});
+  EXPECT_EQ(run(with(driven, {{"limits", {{"radius_ratio", 0.1}}}, {"parameters", {{"beta", 1}}}})),
+            exit_done);
+  useless(driven, {{"variant", {{"law", "dynamic"}}}, {"parameters", {{"beta", 2}}}},
+          "found beta, which has no effect with the dynamic law");
+  const json tumour = {{"flow", "coupled_diffusion"}, {"problem", "tumour_growth"}};
+  useless(tumour, {{"initial", {{"u1", "1"}, {"u2", "1"}}}, {"parameters", {{"seed", 3}}}},
+          "found seed, which has no effect with initial values");
+  useless(tumour, {{"variant", {{"law", "dynamic"}}}, {"parameters", {{"epsilon", 1}}}},
+          "found epsilon, which has no effect with the dynamic law");
+  const json separation = {{"flow", "cahn_hilliard"}, {"problem", "phase_separation"}};
+  useless(separation, {{"initial", {{"u", "x"}}}, {"parameters", {{"mean", 0.3}}}},
+          "found mean, which has no effect with initial values");
+  useless(separation, {{"limits", {{"radius_ratio", 0.1}}}}, "does not look at; expected no key limits");
+  const json mixture = {{"flow", "cahn_hilliard"}, {"problem", "mixture"}, {"initial", {{"u", "x"}}}};
+  useless(mixture, {{"variant", {{"theta", true}}}}, "theta is 0, since w comes from the second equation");
+  useless(mixture, {{"tangential", {{"normal", "1"}}}}, "tangential: found a velocity along the normals");
+  for (const char* flow : {"mean_curvature", "generalised_mean_curvature"})
+    useless({{"flow", flow}},
+            {{"variant", {{"tangential", "minimal_deformation"}, {"velocity", "interpolation"}}}},
+            "found velocity, which has no effect with tangential motion");
+  useless({{"flow", "helfrich"}}, {{"parameters", {{"reduction_time", 1}}}},
+          "found reduction_time, which has no effect without reduced_volume");
+  useless({{"flow", "helfrich"}}, {{"variant", {{"tangential", "minimal_deformation"}}}},
+          "expected one of them: \"constraints\": []");
+}
+
+TEST_F(OwnProblems, ALevelSetNamesDefinitionsAndParametersOfTheConfiguration) {
+  const json surface = {
+      {"name", nullptr}, {"radius", nullptr}, {"level_set", "r2 - R^2"}, {"box", {{-2, -2, -2}, {2, 2, 2}}}};
+  json problem = with(heat(), {{"surface", surface},
+                               {"mesh", {{"subdivisions", nullptr}, {"edge_length", 0.4}}},
+                               {"definitions", {{"r2", "x^2+y^2+z^2"}}},
+                               {"parameters", {{"R", 0.9}}},
+                               {"steps", 0}});
+  const double pi = std::acos(-1);
+  EXPECT_NEAR(series_of(problem).at("area")[0].get<double>(), 4 * pi * 0.81, 0.5);
+  problem["definitions"]["r2"] = "x^2+y^2+z^2+u";
+  EXPECT_THAT(refusal(problem), HasSubstr("surface: level_set: definition of r2"));
+  problem.erase("definitions");
+  EXPECT_THAT(refusal(problem), AllOf(HasSubstr("unknown name \"r2\"; known: x, y, z, R, pi"),
+                                      HasSubstr("parts of formulas in \"definitions\"")));
+  // The default of alpha has the unit of an area, which the surface must know first.
+  problem["surface"]["level_set"] = "x^2+y^2+z^2-alpha";
+  EXPECT_THAT(refusal(problem), HasSubstr("unknown name \"alpha\""));
+}
+
+TEST_F(OwnProblems, ABoxSelectsAComponentOfALevelSet) {
+  json problem = with(heat(), {{"surface",
+                                {{"name", nullptr},
+                                 {"radius", nullptr},
+                                 {"level_set", "(sqrt((abs(x)-1.5)^2+y^2)-0.8)^2+z^2-0.09"},
+                                 {"box", {{-3, -2, -1}, {3, 2, 1}}}}},
+                               {"mesh", {{"subdivisions", nullptr}, {"edge_length", 0.25}}},
+                               {"steps", 0}});
+  EXPECT_THAT(refusal(problem), AllOf(HasSubstr("the surface has 2 components, of which 1 got a mesh"),
+                                      HasSubstr("expected a box around one of them alone, or a mesh file")));
+  problem["surface"]["box"][0][0] = 0;
+  const double pi = std::acos(-1);
+  EXPECT_NEAR(series_of(problem).at("area")[0].get<double>(), 4 * pi * pi * 0.24, 0.3);
+}
+
+TEST_F(OwnProblems, FilesThatAreNoStartAreNamedForWhatTheyAre) {
+  json problem = with(heat(), {{"surface", nullptr}, {"mesh", nullptr}});
+  const std::string collection = (folder / "run.pvd").string();
+  write_file(collection, "<VTKFile/>");
+  problem["initial"] = {{"file", collection}};
+  EXPECT_THAT(refusal(problem), HasSubstr("run.pvd: a list of snapshots; expected one of the .vtu files"));
+  series_of(config(heat()));
+  problem["initial"] = {{"file", series}};
+  EXPECT_THAT(refusal(problem), HasSubstr("series.json: a series; expected the file that \"nodal\""));
 }
 
 }  // namespace

@@ -125,10 +125,10 @@ TEST_F(EvolveStart, TakesNodalValuesOfMshFiles) {
 TEST_F(EvolveStart, RefusesNodalValuesThatCannotBeRight) {
   const json mixture = {{"flow", "cahn_hilliard"}, {"problem", "phase_separation"}};
   EXPECT_EQ(run(from_file(octahedron(node_data("u", 1, {"1", "1", "1", "1", "1"})), mixture)), exit_usage);
-  EXPECT_THAT(message, HasSubstr("u of the file has no finite value at node 110,"));
+  EXPECT_THAT(message, HasSubstr(": u has no finite value at node 110,"));
   const std::vector<std::string> vectors(6, "1 0 0");
   EXPECT_EQ(run(from_file(octahedron(node_data("u", 3, vectors)), mixture)), exit_usage);
-  EXPECT_THAT(message, HasSubstr("u of the file has 3 components, 1 expected"));
+  EXPECT_THAT(message, HasSubstr(": u has 3 components, 1 expected"));
 
   const std::string H = node_data("H", 1, {"2", "2", "2", "2", "2", "2"});
   const Mesh mesh = octasphere(1, 0);
@@ -141,8 +141,8 @@ TEST_F(EvolveStart, RefusesNodalValuesThatCannotBeRight) {
               length == 1 ? exit_done : exit_usage)
         << message;
     EXPECT_THAT(message, HasSubstr(length == 1  ? "H, nu from the mesh file"
-                                   : length < 0 ? "nu of the file is not the outward normal"
-                                                : "nu of the file has length 0.2 at node 10,"));
+                                   : length < 0 ? ": nu is not the outward normal"
+                                                : ": nu has length 0.2 at node 10,"));
   }
 }
 

@@ -97,6 +97,34 @@ TEST(FormulaSurface, KnowsTheGenus) {
   EXPECT_EQ(characteristic(three_tori, {Vec3(-3, -1.2, -0.5), Vec3(3, 1.2, 0.5)}), -4);
 }
 
+TEST(FormulaSurface, KnowsHowManyComponentsItHas) {
+  const Box box = {Vec3(-3, -2, -1.2), Vec3(3, 2, 1.2)}, half = {Vec3(0, -2, -1.2), Vec3(3, 2, 1.2)};
+  const std::string two_tori = "(sqrt((abs(x)-1.5)^2+y^2)-0.8)^2+z^2-0.09",
+                    torus_and_sphere = "min((sqrt((x-1.5)^2+y^2)-0.8)^2+z^2-0.09, (x+1.5)^2+y^2+z^2-0.49)",
+                    shell = "(sqrt(x^2+y^2+z^2)-0.8)^2-0.04";
+  EXPECT_EQ(formula_surface(two_tori, box).components, 2);
+  EXPECT_EQ(formula_surface(torus_and_sphere, box).components, 2);
+  EXPECT_EQ(formula_surface(shell, box).components, 2) << "one inside the other";
+  for (const std::string& level_set : {two_tori, torus_and_sphere}) {
+    const Surface torus = formula_surface(level_set, half);
+    EXPECT_EQ(torus.components, 1) << "the one in the box";
+    EXPECT_EQ(torus.euler_characteristic, 0);
+    EXPECT_GT(torus.level(Vec3(-1.5, 0, 0)), 0) << "there is nothing beside the box";
+  }
+}
+
+TEST(FormulaSurface, NamesDefinitionsAndNumbersOfTheConfiguration) {
+  const FormulaNames names = {{}, {{"R", 0.5}, {"c", 1}}, {{"r2", "x^2+y^2+z^2/c"}, {"of_time", "t"}}};
+  const json box = {{-1.3, -1.3, -1.3}, {1.3, 1.3, 1.3}};
+  const auto height = [&](const json& parameters) {
+    return named_surface({{"level_set", "r2-R^2"}, {"box", box}, {"parameters", parameters}}, names)
+        .closest_point(Vec3(0, 0, 0.6))[2];
+  };
+  EXPECT_NEAR(height(json::object()), 0.5, 1e-12);
+  EXPECT_NEAR(height({{"R", 0.55}}), 0.55, 1e-12) << "its own go first";
+  EXPECT_NEAR(height({{"c", 1.21}}), 0.55, 1e-12) << "in definitions, too";
+}
+
 std::string refusal(const json& description) {
   try {
     named_surface(description);
@@ -118,7 +146,7 @@ TEST(FormulaSurface, RefusesWhatIsNoClosedSmoothSurface) {
        "the level set has no zero in the box, it is positive there; expected d < 0 inside"},
       {with("x^2+y^2+z^2-100"), "the level set has no zero in the box, it is negative there"},
       {with("x^2+y^2-0.5"), "the surface is open at the box: d < 0 at"},
-      {with("0.5-x^2-y^2-z^2"), "the surface is open at the box: d < 0 at (-1.3, -1.3, -1.3)"},
+      {with("0.5-x^2-y^2-z^2"), "negative on all sides of the box; expected it negative inside the surface"},
       {with("log(x)+y^2+z^2"), "is nan at x = -1.3"},
       {with("max(max(abs(x), abs(y)), abs(z))-1"), "the surface has an edge or crosses itself near"},
       {with("(x^2+y^2+z^2-1)^3"), "expected a gradient that is not zero on the surface"},
