@@ -139,7 +139,8 @@ explained with each flow.
                 "largest_step": 0.01},        default: no bound
    "start": "exact" | "cascade" | "substeps:16",  default: exact where a solution is known (sphere, angenent_torus), else substeps:16
    "quadrature": {"conical": 6} | {"degree": 10},  default: degree 4, 6, 8, 10 for P1..P4; bgn of degree 1: the vertices
-   "limits": {"curvature_size": 5,            those that are listed with the flow, see Flows. Singular: |H| times edge length above this (or 4 times its initial maximum);
+   "limits": {"curvature_size": 5,            singular, as far as listed with the flow: |H| times edge length above
+                                              this (or 4 times its initial maximum);
               "radius_ratio": 0.01,           radius ratio of an element below this (or the square of the initial minimum; no
               "normal_length": 4},            limit if that minimum is < 0.01); |nu| or 1/|nu| of a flow's nu above this
    "exact": {"u": "exp(-6*t)*x*y"},           a solution by formulas of x, y, z, t: the series has the errors of each step
@@ -190,12 +191,13 @@ its end a run says on standard error how many steps were taken, how long that to
 
 const char* const end_help =
     R"(A run that meets a singularity ends with exit code 2, and reports and writes what it has computed. So it does
-  when u grows to 1000 times its initial size (tumour_growth: or that of its steady state; kinetics: 1e9 times),
+  when u grows to 1000 times its initial size (tumour_growth: or that of its steady state; kinetics, mixture, ellipsoid: 1e9),
   when the surface is extinct: its extrapolated area is zero within the next step, or its area is below 1e-6 of the
   initial one, or, under mean curvature flow, it has lived for A/(16 pi), the longest possible time for an area A.
 
-"stop" ends it with exit code 0, and "status" of the series is "stationary: ..", "area: .." or "seconds: ..". A run that
-resumes from its checkpoint takes a step before it is judged again.
+"stop" ends it with exit code 0, and "status" of the series is "stationary: ..", "area: .." or "seconds: ..", headed by
+"in the first step: " where one step was enough, which may say more of the bound than of the flow. A run that resumes
+from its checkpoint takes a step before it is judged again.
 
 Else "status" is "ok", the reason why the run ended, or "ok, but ..": then nu and H, which the flow evolves, no longer
 agree with the surface, for example because the mesh does not resolve the curvature; or, with bgn, nodes have slid off
