@@ -53,7 +53,7 @@ help:
 	@echo "make crash         kills runs at KILLS=200 random moments, fills disks, damages checkpoints; then compares the numbers"
 	@echo "make fuzz          mutated files for each reader, SECONDS=60 of each, in build-fuzz/ (needs clang)"
 	@echo "make bench         ms per step and phase at growing sizes, factorisations compared with CHOLMOD and MUMPS"
-	@echo "make bench-peers   a step compared with DOLFINx and PETSc, where they are installed"
+	@echo "make bench-peers   a step compared with DOLFINx and PETSc, vesicles with Surface Evolver, where they are installed"
 	@echo "make build | test | format | format-check | packages-check | deps     parts of the above"
 	@echo "make samples       runs the configurations in reference/examples and compares their ends with what is expected"
 	@echo "make findings      docs/findings/ and the tables of README.md, from the published results"
@@ -270,9 +270,10 @@ bench:
 	OMP_NUM_THREADS=1 OMP_THREAD_LIMIT=1 OPENBLAS_NUM_THREADS=1 OPENBLAS_CORETYPE=$$core $(BIN)/bench_step
 
 bench-peers:
-	@$(call prepare,build,build bench peers,bench_step)
+	@$(call prepare,build,build bench peers,bench_step evolve helfrich_vesicles)
 	$(BIN)/bench_step --write-step $(BUILD)/step.json
 	$(PYTHON) bench/peer_dolfinx.py $(BUILD)/step.json
+	$(PYTHON) bench/peer_evolver.py $(BIN)
 
 clean:
 	rm -rf $(BUILD) results/check

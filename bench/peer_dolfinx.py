@@ -26,7 +26,8 @@ try:
     from mpi4py import MPI
     from petsc4py import PETSc
 except ImportError as error:
-    sys.exit(f"DOLFINx is not installed ({error}); on Debian: apt-get install python3-dolfinx")
+    print(f"DOLFINx is not installed ({error}); on Debian: apt-get install python3-dolfinx")
+    sys.exit()
 
 logging.disable(logging.WARNING)  # UFL would warn of a quadrature rule given as arrays
 
