@@ -57,8 +57,8 @@ void ExactFormulas::find_exact_surface(const EvolveConfig& config) {
     exact_.surface = formula_level_set(formula_in(reader, "level_set", names), space_.length());
     return true;
   };
-  is_compared_ = take("exact") || take("velocity");
-  if (is_compared_) {
+  if (take("exact") || take("velocity")) {
+    largest_distance_ = mesh_quality(space_.elements(), x0_).h;
     const double start = config.adaptive ? config.adaptive->start_time : config.grid.start_time;
     if (config.formulas.at("exact").contains("level_set"))
       compare_with_nodes(exact_.surface(start), config.mesh, start, where_);
@@ -69,11 +69,11 @@ void ExactFormulas::find_exact_surface(const EvolveConfig& config) {
 }
 
 void ExactFormulas::warn_of_distance(double t, const Field& x) {
-  if (!is_compared_) return;
-  const double h = mesh_quality(space_.elements(), x0_).h;
+  if (!largest_distance_) return;
+  const double h = *largest_distance_;
   const Distance found = farthest_from(exact_.surface(t), x);
   if (found.value <= h) return;
-  is_compared_ = false;
+  largest_distance_.reset();
   warn(where_ + format(": at t = %g the nodes have left the exact surface: the farthest, at (%g, %g, %g), is "
                        "at a distance of about %.2g (longest edge: %.2g), and lifted errors mean little",
                        t, found.at[0], found.at[1], found.at[2], found.value, h));

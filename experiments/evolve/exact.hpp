@@ -37,9 +37,10 @@ class ExactFormulas {
   const SurfaceSpace& space_;
   std::string where_;
   Field x0_;
-  ExactEvolution exact_;      ///< surface and trajectories only where they are known
-  CompiledFormulas nodal_;    ///< all but x
-  bool is_compared_ = false;  ///< the nodes with a level set of the exact surface
+  ExactEvolution exact_;    ///< surface and trajectories only where they are known
+  CompiledFormulas nodal_;  ///< all but x
+  /// Of the nodes from a level set of the exact surface before it warns: the longest edge at the start.
+  std::optional<double> largest_distance_;
   std::optional<Quantities> quantities_;
   SymmetricMatrix M_, A_;
 };
