@@ -24,7 +24,8 @@ Rules:
 4. A file that the compiler or the linker reads must belong to a package. When something that runs reads files that
    belong to none (a Python of conda's, say), a line says that these were not judged.
 5. The package of another compiler or build tool than g++ and make (CXX, CMAKE_GENERATOR) counts as listed.
-6. Who lists the machine's fonts opens all of them: only those that fontconfig chooses for report.css count.
+6. Who lists the machine's fonts opens all of them and what packages tell fontconfig of theirs: only those that it
+   chooses for report.css count.
 7. Every start of Python reads the .pth files that are there, and the hook that setuptools' one names (_distutils_hack).
 8. Dynamic loaders do not count: libc6 is on every system, and ldd asks the loaders of other architectures, too.
 9. What a compiler opens counts by its dependency file alone: __has_include opens headers that need not be there.
@@ -49,7 +50,7 @@ PARTS = {"samples-check": RUNS, "tables-check": RUNS, "verdicts": RUNS, "indepen
 CONSUMER = "consumer/build"
 NOBODYS = ("/proc/", "/sys/", "/dev/", "/run/", "/tmp/", "/var/", "/etc/", "/home/", "/usr/share/locale/",
            "/usr/lib/locale/", "/usr/lib/python3/dist-packages/_distutils_hack/")
-FONTS = ("/usr/share/fonts/", "/usr/local/share/fonts/", "/usr/share/texmf/fonts/")
+FONTS = ("/usr/share/fonts/", "/usr/local/share/fonts/", "/usr/share/texmf/fonts/", "/usr/share/fontconfig/")
 LOADER = re.compile(r"/ld(-[\w-]+)?\.so\.\d+$")
 COMPILER = re.compile(r"cc1plus$|clang")
 # Variables of CMake's cache, and what is there unless the user chooses something else.

@@ -98,6 +98,7 @@ class Readers(unittest.TestCase):
         lines = ['7 execve("/usr/bin/python3", [""...], 0x1 /* 9 vars */) = 0\n',
                  '7 openat(AT_FDCWD, "/usr/lib/python3/numpy.py", O_RDONLY|O_CLOEXEC) = 3\n',
                  '7 openat(AT_FDCWD, "/usr/share/fonts/a.ttf", O_RDONLY) = 3\n',
+                 '7 openat(AT_FDCWD, "/usr/share/fontconfig/conf.avail/a.conf", O_RDONLY|O_CLOEXEC) = 3\n',
                  '7 execve("/lib/ld-linux.so.2", [""...], 0x1 /* 9 vars */) = 0\n',
                  '7 execve("/lib64/ld-linux-x86-64.so.2", [""...], 0x1 /* 9 vars */) = 0\n', "7 +++ exited with 0 +++\n",
                  '8 execve("/usr/lib/gcc/cc1plus", [""...], 0x1 /* 9 vars */) = 0\n',
