@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "solver/constants.hpp"
+#include "solver/disjoint_sets.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/sides.hpp"
 
@@ -62,21 +62,11 @@ void lay_down_caps(const Mesh& mesh, const std::vector<int>& twin, const std::ve
 /// sharp.
 void number_sectors(Features& features) {
   const int n = int(features.twin.size());
-  std::vector<int> parent(n);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int h) {
-    while (parent[h] != h) h = parent[h] = parent[parent[h]];
-    return h;
-  };
-  // The lower number becomes the root, so that sectors are numbered where an element first touches them.
-  for (int h = 0; h < n; ++h) {
-    if (features.sharp[h]) continue;
-    const int a = root(h), b = root(side_after(features.twin[h]));
-    parent[std::max(a, b)] = std::min(a, b);
-  }
-  features.sector.resize(n);
+  DisjointSets sets(n);
   for (int h = 0; h < n; ++h)
-    features.sector[h] = root(h) == h ? features.sectors++ : features.sector[root(h)];
+    if (!features.sharp[h]) sets.unite(h, side_after(features.twin[h]));
+  features.sector = sets.numbered();
+  features.sectors = sets.count();
 }
 
 void link_sharp_edges(const Mesh& mesh, double angle, Features& features) {

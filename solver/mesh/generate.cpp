@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <queue>
 #include <utility>
 #include <vector>
 
+#include "solver/disjoint_sets.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/delaunay.hpp"
 #include "solver/mesh/relax.hpp"
@@ -35,17 +35,10 @@ void check_resolution(const Mesh& mesh, const Surface& surface, const SizeFuncti
 }
 
 int component_count(const Mesh& mesh) {
-  std::vector<int> parent(mesh.nodes.rows());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int node) {
-    while (parent[node] != node) node = parent[node] = parent[parent[node]];
-    return node;
-  };
+  DisjointSets sets(int(mesh.nodes.rows()));
   for (Eigen::Index t = 0; t < mesh.elements.rows(); ++t)
-    for (int i : {1, 2}) parent[root(mesh.elements(t, i))] = root(mesh.elements(t, 0));
-  int count = 0;
-  for (int node = 0; node < int(parent.size()); ++node) count += parent[node] == node;
-  return count;
+    for (int i : {1, 2}) sets.unite(mesh.elements(t, i), mesh.elements(t, 0));
+  return sets.count();
 }
 
 void check_topology(const Mesh& mesh, const Surface& surface) {
