@@ -18,10 +18,6 @@ constexpr double largest_change = 0.05;
 
 constexpr int most_iterations = factorisation_cost + 1;
 
-/// Steps after which newer factors may take fewer iterations although the old ones take no more than at
-/// first, because the guesses have become better.
-constexpr int longest_service = 50;
-
 void check_rows(const Field& saved, int dofs) {
   if (saved.size() > 0 && saved.rows() != dofs)
     throw InputError(format("factors of a surface with %td nodes, expected %d", saved.rows(), dofs));
@@ -29,11 +25,11 @@ void check_rows(const Field& saved, int dofs) {
 
 }  // namespace
 
-LaggedBlockSolver::LaggedBlockSolver(const SurfaceSpace& space) : space_(space), block_(space.pattern()) {}
+LaggedBlockSolver::LaggedBlockSolver(const SurfaceSpace& space)
+    : space_(space), block_(space.pattern()), service_(factorisation_cost) {}
 
 bool LaggedBlockSolver::is_due(double alpha) const {
-  return !(std::abs(alpha_ / alpha - 1) <= largest_change) || steps_ == longest_service ||
-         newest_iterations_ * steps_ > factorisation_cost + iterations_;
+  return !(std::abs(alpha_ / alpha - 1) <= largest_change) || service_.is_over();
 }
 
 BlockSolver& LaggedBlockSolver::factorise(double alpha, const Field& x, const SymmetricMatrix& M,
@@ -42,7 +38,7 @@ BlockSolver& LaggedBlockSolver::factorise(double alpha, const Field& x, const Sy
   block_.factorise(alpha, 1, 1, M, A);
   alpha_ = alpha;
   x_ = x;
-  steps_ = iterations_ = 0;
+  service_.start();
   ++factorisations_;
   return block_;
 }
@@ -65,19 +61,13 @@ void LaggedBlockSolver::solve(double alpha, const Field& x, const SymmetricMatri
     r_to_u = u_;
     s_to_w = w_;
   }
-  newest_iterations_ = *iterations;
-  iterations_ += *iterations;
-  ++steps_;
+  service_.add_step(*iterations);
   guess.u_change = r_to_u - guess.u;
   guess.w_change = s_to_w - guess.w;
 }
 
 nlohmann::json LaggedBlockSolver::progress() const {
-  return {{"alpha", alpha_},
-          {"x", packed(x_)},
-          {"steps", steps_},
-          {"iterations", iterations_},
-          {"newest_iterations", newest_iterations_}};
+  return {{"alpha", alpha_}, {"x", packed(x_)}, {"service", service_.progress()}};
 }
 
 void LaggedBlockSolver::resume(const nlohmann::json& saved) {
@@ -89,9 +79,7 @@ void LaggedBlockSolver::resume(const nlohmann::json& saved) {
     space_.assemble(x, M, A);
     factorise(alpha, x, M, A);
   }
-  steps_ = saved.at("steps").get<int>();
-  iterations_ = saved.at("iterations").get<int>();
-  newest_iterations_ = saved.at("newest_iterations").get<int>();
+  service_.resume(saved.at("service"));
 }
 
 nlohmann::json progress(const LaggedBlockSolver::Guess& guess) {

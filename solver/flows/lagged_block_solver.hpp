@@ -4,17 +4,14 @@
 #include <nlohmann/json.hpp>
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/factor_service.hpp"
 #include "solver/linalg/block_solver.hpp"
 
 namespace esfem {
 
 /// Solves the block systems of a sequence of time steps, alpha M u - A w = r, A u + M w = s (N x c), with the
-/// factors of an earlier step's system as long as that is cheaper than a factorisation per step:
-/// BlockSolver::refine from a guess, to the accuracy of a direct solution.
-///
-/// With c the cost of a factorisation in iterations and m_j the iterations of step j, a factorisation that
-/// serves n steps costs (c + m_1 + .. + m_n) / n a step. That is minimal when a new factorisation is made as
-/// soon as m_n exceeds this mean, or after 50 steps. The decision depends on counts alone, not on clocks.
+/// factors of an earlier step's system as long as that is cheaper than a factorisation per step
+/// (FactorService): BlockSolver::refine from a guess, to the accuracy of a direct solution.
 class LaggedBlockSolver {
  public:
   /// The space must outlive the solver.
@@ -23,8 +20,15 @@ class LaggedBlockSolver {
   /// The guess of a sequence of solutions, kept by the caller: u and w extrapolated from the steps before,
   /// with the error that this extrapolation had in the newest step added to them.
   struct Guess {
-    Field u, w;                ///< extrapolated
-    Field u_change, w_change;  ///< newest solution minus its extrapolation; empty: none yet
+    /// Extrapolated from the steps before, N x c.
+    /// @{
+    Field u, w;
+    /// @}
+
+    /// Newest solution minus its extrapolation; empty: none yet.
+    /// @{
+    Field u_change, w_change;
+    /// @}
   };
 
   /// Solves the system with M(x) and A(x) in place: the right-hand sides r and s become u and w, and the
@@ -48,17 +52,17 @@ class LaggedBlockSolver {
 
   const SurfaceSpace& space_;
   BlockSolver block_;
-  double alpha_ = 0;           ///< of the factors; 0: there are none
-  Field x_;                    ///< nodes of the factors' matrices
-  int steps_ = 0;              ///< that the factors have served: solutions
-  int iterations_ = 0;         ///< of all these steps
-  int newest_iterations_ = 0;  ///< of the last step
+  double alpha_ = 0;  ///< of the factors; 0: there are none
+  Field x_;           ///< nodes of the factors' matrices
+  FactorService service_;
   Field u_, w_;
   int factorisations_ = 0;
 };
 
 /// The changes of a guess, for checkpoints; resume throws InputError when they have not N rows.
+/// @{
 nlohmann::json progress(const LaggedBlockSolver::Guess& guess);
 void resume(LaggedBlockSolver::Guess& guess, const nlohmann::json& saved, int dofs);
+/// @}
 
 }  // namespace esfem

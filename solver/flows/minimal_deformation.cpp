@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
+#include "solver/disjoint_sets.hpp"
 #include "solver/error.hpp"
 #include "solver/time/checkpoint.hpp"
 
@@ -16,27 +16,24 @@ constexpr double cg_tolerance = 1e-9;
 
 constexpr int most_cg_iterations = 200;
 
-/// Velocities that the guess of kappa is extrapolated from: with four about a third of the iterations less
-/// than with two.
-constexpr int most_differences = 4;
+/// Velocities that the guess of kappa is extrapolated from at most: seven take a quarter of the iterations
+/// less than four.
+constexpr int most_differences = 7;
+
+/// Iterations that take as long as a factorisation of the mass matrix.
+constexpr double mass_factorisation_cost = 1.5;
 
 /// The component of the surface that each node belongs to, counted from 0.
 std::vector<int> components(const SparsityPattern& pattern) {
-  std::vector<int> parent(pattern.size);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&](int j) {
-    while (parent[j] != j) j = parent[j] = parent[parent[j]];
-    return j;
-  };
+  DisjointSets sets(pattern.size);
   for (int j = 0; j < pattern.size; ++j)
-    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) {
-      const int a = root(j), b = root(pattern.row[k]);
-      parent[std::max(a, b)] = std::min(a, b);
-    }
-  std::vector<int> component(pattern.size);
-  int count = 0;
-  for (int j = 0; j < pattern.size; ++j) component[j] = root(j) == j ? count++ : component[root(j)];
-  return component;
+    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) sets.unite(j, pattern.row[k]);
+  return sets.numbered();
+}
+
+void diagonal(const SymmetricMatrix& M, Field& entries) {
+  entries.resize(M.pattern->size, 1);
+  for (int j = 0; j < M.pattern->size; ++j) entries(j, 0) = M.values[M.pattern->column_start[j]];
 }
 
 }  // namespace
@@ -47,7 +44,8 @@ MinimalDeformation::MinimalDeformation(const SurfaceSpace& space)
       B_W_{space.matrix(), space.matrix(), space.matrix(), space.matrix()},
       grounded_(space.matrix()),
       grounded_solver_(space.pattern()),
-      mass_solver_(space.pattern()) {
+      mass_solver_(space.pattern()),
+      mass_service_(mass_factorisation_cost) {
   for (int j = 0; j < space.dofs(); ++j)
     if (component_[j] == int(fixed_nodes_.size())) fixed_nodes_.push_back(j);
 }
@@ -58,6 +56,22 @@ void MinimalDeformation::ground(const SymmetricMatrix& A) {
   grounded_.values = A.values;
   for (const int j : fixed_nodes_) grounded_.values[grounded_.pattern->column_start[j]] *= 2;
   grounded_solver_.factorise(0, A, 1, grounded_);
+}
+
+void MinimalDeformation::factorise_mass(const Field& x, const SymmetricMatrix& M) {
+  mass_service_.end();
+  mass_solver_.factorise(1, M, 0, M);
+  mass_solver_.round();
+  mass_x_ = x;
+  diagonal(M, mass_diagonal_);
+  mass_service_.start();
+}
+
+/// M is factorised, or scaled factors of an earlier one serve.
+void MinimalDeformation::set_mass(const Field& x, const SymmetricMatrix& M) {
+  if (mass_service_.is_over()) factorise_mass(x, M);
+  diagonal(M, mass_scale_);
+  mass_scale_ = (mass_diagonal_.array() / mass_scale_.array()).sqrt();
 }
 
 /// out_a = B_a kappa.
@@ -106,12 +120,19 @@ void MinimalDeformation::multiply_B_transposed(const Field& v, Field& out) const
   }
 }
 
+/// r becomes M^-1 r, to about the change of the surface since M was factorised.
+void MinimalDeformation::solve_mass(Field& r) {
+  r.array() *= mass_scale_.array();
+  mass_solver_.solve(r);
+  r.array() *= mass_scale_.array();
+}
+
 /// out = P r with C^T out = 0.
 void MinimalDeformation::precondition(const Field& r, Field& out) {
   work_ = r;
-  mass_solver_.solve(work_);
+  solve_mass(work_);
   B_W_[3].multiply(work_, out);
-  mass_solver_.solve(out);
+  solve_mass(out);
   keep_constraint(out);
 }
 
@@ -122,10 +143,15 @@ void MinimalDeformation::multiply_S(const Field& p, Field& v_p) {
   multiply_B_transposed(v_p, S_p_);
 }
 
-/// kappa extrapolated from the last velocities, and C^T kappa = 0.
+/// kappa extrapolated from the last velocities, and C^T kappa = 0. The order is the one up to which the
+/// differences fall: higher ones are rounding errors, or steps of other sizes.
 void MinimalDeformation::guess() {
   if (differences_.size() == 0) differences_.setZero(space_.dofs(), most_differences);
-  kappa_ = differences_.leftCols(known_differences_).rowwise().sum();
+  kappa_ = differences_.col(0);
+  for (int order = 1; order < known_differences_; ++order) {
+    if (differences_.col(order).norm() >= differences_.col(order - 1).norm()) break;
+    kappa_ += differences_.col(order);
+  }
   keep_constraint(kappa_);
 }
 
@@ -163,7 +189,7 @@ void MinimalDeformation::keep_constraint(Field& p) const {
   p -= E_ * (EC_inverse_.transpose() * (C_.transpose() * p));
 }
 
-/// B_a; A + W for the preconditioner; and the factors.
+/// B_a; A + W for the preconditioner; and factors.
 void MinimalDeformation::set_matrices(const Field& x, const Field& nu_V, const SymmetricMatrix& M,
                                       const SymmetricMatrix& A) {
   const auto weights = [](const PointData<3>& p, Pack* weight) {
@@ -176,7 +202,7 @@ void MinimalDeformation::set_matrices(const Field& x, const Field& nu_V, const S
   space_.assemble_weighted_masses<3>(x, nu_V, weights, B_W_);
   B_W_[3].values += A.values;
   ground(A);
-  mass_solver_.factorise(1, M, 0, A);
+  set_mass(x, M);
   set_constraint(nu_V);
 }
 
@@ -215,20 +241,32 @@ void MinimalDeformation::velocity(const Field& x, const Field& nu_V, const Symme
   for (int j = 0; j < space_.dofs(); ++j)
     v.row(j) += mean_motion_.middleRows<3>(3 * component_[j]).transpose();
   keep_for_guesses();
+  mass_service_.add_step(iterations_);
 }
 
 nlohmann::json MinimalDeformation::progress() const {
-  return {{"kappa_differences", packed(differences_.leftCols(known_differences_))}};
+  return {{"kappa_differences", packed(differences_.leftCols(known_differences_))},
+          {"mass_x", packed(mass_service_.serves() ? mass_x_ : Field())},
+          {"mass_service", mass_service_.progress()}};
 }
 
 void MinimalDeformation::resume(const nlohmann::json& saved) {
-  const Field known = unpacked(saved.at("kappa_differences"));
+  const Field known = unpacked(saved.at("kappa_differences")), mass_x = unpacked(saved.at("mass_x"));
   if (known.cols() > most_differences || (known.cols() > 0 && known.rows() != space_.dofs()))
     throw InputError(format("differences of kappa are %td x %td, expected %d x %d at most", known.rows(),
                             known.cols(), space_.dofs(), most_differences));
+  if (mass_x.size() > 0 && (mass_x.rows() != space_.dofs() || mass_x.cols() != 3))
+    throw InputError(format("nodes of the mass matrix are %td x %td, expected %d x 3", mass_x.rows(),
+                            mass_x.cols(), space_.dofs()));
   differences_.setZero(space_.dofs(), most_differences);
   differences_.leftCols(known.cols()) = known;
   known_differences_ = static_cast<int>(known.cols());
+  if (mass_x.size() > 0) {
+    SymmetricMatrix M = space_.matrix(), A = space_.matrix();
+    space_.assemble(mass_x, M, A);
+    factorise_mass(mass_x, M);
+    mass_service_.resume(saved.at("mass_service"));
+  }
 }
 
 }  // namespace esfem

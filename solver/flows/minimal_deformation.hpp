@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/assembly/surface_space.hpp"
+#include "solver/flows/factor_service.hpp"
 #include "solver/linalg/spd_solver.hpp"
 
 namespace esfem {
@@ -26,9 +27,11 @@ namespace esfem {
 /// Nocedal, SIAM J. Sci. Comput. 23, 2001). Without tangential motion kappa = (-Lap + |A|²) V, so that S^-1
 /// is close to P = M^-1 (A + W) M^-1, W_ij = int |grad nu|² phi_i phi_j: both have the principal symbol of
 /// -Lap, since sum_a nu_a² = 1, and P S is the identity and a compact operator. The number of iterations does
-/// not depend on the mesh. With E_a the nodal values of nu_a, E^T C is regular, and 1 - E (C^T E)^-1 C^T and
-/// its transpose project onto these kappa and their residuals. It takes three unknowns a node less than a
-/// factorisation of the whole system does.
+/// not depend on the mesh. In P, D M_0 D stands for M: M_0 is that of an earlier step, whose factors
+/// serve as long as FactorService says, D_ii² = M_ii / (M_0)_ii. It is M where all triangles of a flat
+/// surface grow by the same factor, and differs by O(h) where the factor varies smoothly. With E_a the nodal
+/// values of nu_a, E^T C is regular, and 1 - E (C^T E)^-1 C^T and its transpose project onto these kappa and
+/// their residuals. It takes three unknowns a node less than a factorisation of the whole system does.
 class MinimalDeformation {
  public:
   /// The space must outlive the object.
@@ -45,14 +48,19 @@ class MinimalDeformation {
   /// Iterations that it took.
   int iterations() const { return iterations_; }
 
-  /// kappa of the last velocities, from which the next iteration starts, for checkpoints.
+  /// What later velocities depend on to the last bit, for checkpoints: kappa of the last ones, from which the
+  /// next iteration starts, and the nodes of the mass matrix that is factorised.
   nlohmann::json progress() const;
-  /// Resumes from there. Throws InputError when the field has not N rows and at most four columns.
+  /// Resumes from there; factorises. Throws InputError when a field has not N rows, or there are too
+  /// many kappa.
   void resume(const nlohmann::json& saved);
 
  private:
   void set_matrices(const Field& x, const Field& nu_V, const SymmetricMatrix& M, const SymmetricMatrix& A);
   void ground(const SymmetricMatrix& A);
+  void factorise_mass(const Field& x, const SymmetricMatrix& M);
+  void set_mass(const Field& x, const SymmetricMatrix& M);
+  void solve_mass(Field& r);
   void multiply_B(const Field& kappa, Field& out) const;
   void multiply_B_transposed(const Field& v, Field& out) const;
   void multiply_S(const Field& p, Field& v_p);
@@ -69,10 +77,13 @@ class MinimalDeformation {
   SymmetricMatrix B_W_[4];        ///< B_1, B_2, B_3 and, with A added to it, W
   SymmetricMatrix grounded_;
   SpdSolver grounded_solver_, mass_solver_;
-  Field C_, E_;       ///< three columns a component; E: nodal values of nu
-  Field EC_inverse_;  ///< of E^T C
+  FactorService mass_service_;
+  Field mass_x_, mass_diagonal_;  ///< nodes and diagonal of the M_0 that is factorised
+  Field mass_scale_;              ///< the diagonal of D^-1
+  Field C_, E_;                   ///< three columns a component; E: nodal values of nu
+  Field EC_inverse_;              ///< of E^T C
   Field kappa_, mean_motion_;
-  Field differences_;  ///< of kappa of the last velocities: backward ones of order 0, 1, 2, 3
+  Field differences_;  ///< of kappa of the last velocities: backward ones of order 0, 1, ..
   int known_differences_ = 0;
   Field V_, b_, ones_, r_, z_, p_, v_p_, S_p_, work_;
   int iterations_ = 0;

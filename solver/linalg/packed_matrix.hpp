@@ -9,6 +9,8 @@
 
 namespace esfem {
 
+/// @cond
+
 /// As many complex numbers as Vector has real ones.
 template <class Vector>
 struct ComplexVector {
@@ -90,11 +92,15 @@ inline std::complex<double> lane_sum(const ComplexPack& p) {
   return {lane_sum(p.re), lane_sum(p.im)};
 }
 
+/// @endcond
+
 /// A dense matrix whose columns are read and written in Packs; it does not own its memory. Rows are
 /// numbered from `first_row`, a multiple of pack_size; `stride`, also one, is the number of rows that a
 /// column has room for. Complex columns are all real parts, then all imaginary parts.
 template <class T>
 struct PackedMatrix;
+
+/// @cond
 
 template <>
 struct PackedMatrix<double> {
@@ -160,5 +166,21 @@ struct PackedMatrix<std::complex<double>> {
     std::memcpy(to + stride, &p.im, sizeof p.im);
   }
 };
+
+/// The same numbers rounded to single precision, read as doubles.
+struct RoundedMatrix {
+  const float* data;
+  int stride;
+
+  const float* column(int j) const { return data + std::ptrdiff_t{j} * stride; }
+  double get(int i, int j) const { return column(j)[i]; }
+  Pack load(int i, int j) const {
+    float __attribute__((vector_size(pack_size * sizeof(float)))) rounded;
+    std::memcpy(&rounded, column(j) + i, sizeof rounded);
+    return __builtin_convertvector(rounded, Pack);
+  }
+};
+
+/// @endcond
 
 }  // namespace esfem

@@ -137,7 +137,8 @@ template <class T, int b>
 std::ptrdiff_t SymmetricFactor<T, b>::memory() const {
   std::ptrdiff_t numbers = panels_size_ + stack_size_;
   for (const Workspace& workspace : workspaces_) numbers += workspace.scaled.size() + workspace.right.size();
-  return sizeof(double) * numbers + sizeof(T) * (x_.size() + updates_.size());
+  return sizeof(double) * numbers + sizeof(float) * rounded_.size() +
+         sizeof(T) * (x_.size() + updates_.size());
 }
 
 template <class T, int b>
@@ -182,7 +183,7 @@ void SymmetricFactor<T, b>::for_each_front(Direction direction, const Work& work
 
 template <class T, int b>
 void SymmetricFactor<T, b>::factorise_fronts(const Load& load) {
-  factorised_ = false;
+  factorised_ = is_rounded_ = false;
   panels_.resize(panels_size_);
   stack_.resize(stack_size_);
   for_each_front(upwards, [&](int f, Workspace& workspace) { factorise_front(f, load, workspace); });
@@ -291,6 +292,24 @@ void SymmetricFactor<T, b>::solve_columns() {
   for_each_front(downwards, [&](int f, Workspace& workspace) { solve_backward<columns>(f, workspace); });
 }
 
+template <class T, int b>
+void SymmetricFactor<T, b>::round() {
+  require_factor(unknowns());
+  if constexpr (std::is_same_v<T, double>) {
+    rounded_ = panels_.template cast<float>();
+    is_rounded_ = true;
+  }
+}
+
+/// use(L of a front), with the numbers as they are or rounded.
+template <class T, int b>
+template <class Use>
+void SymmetricFactor<T, b>::with_L(int f, const FrontMatrix<T>& matrix, const Use& use) const {
+  if constexpr (std::is_same_v<T, double>)
+    if (is_rounded_) return use(RoundedMatrix{rounded_.data() + places_[f].panel, matrix.L.stride});
+  use(matrix.L);
+}
+
 /// y = L^-1 x for the rows that the front eliminates, then D^-1 y; what their elimination adds to its other
 /// rows goes to the parent, as update matrices do.
 template <class T, int b>
@@ -311,7 +330,7 @@ void SymmetricFactor<T, b>::solve_forward(int f, Workspace& workspace) {
       for (int a = 0; a < b; ++a)
         for (int c = 0; c < columns; ++c) y.add(b * tree_.position[r] + a, c, *update++);
   }
-  substitute_forward<T, columns>(matrix, y);
+  with_L(f, matrix, [&](const auto& L) { substitute_forward<T, columns>(matrix.n, L, y); });
   const T* inverse_pivots = inverse_pivots_.data() + b * front.first;
   for (int i = 0; i < matrix.n; ++i)
     for (int c = 0; c < columns; ++c) x[i * columns + c] = product(y.get(i, c), inverse_pivots[i]);
@@ -337,7 +356,7 @@ void SymmetricFactor<T, b>::solve_backward(int f, Workspace& workspace) {
   }
   for (int c = 0; c < columns; ++c)
     for (int i = matrix.m; i < matrix.L.stride; ++i) y.set(i, c, T{});
-  substitute_backward<T, columns>(matrix, y);
+  with_L(f, matrix, [&](const auto& L) { substitute_backward<T, columns>(matrix.n, L, y); });
   for (int i = 0; i < matrix.n; ++i)
     for (int c = 0; c < columns; ++c) x[i * columns + c] = y.get(i, c);
 }

@@ -61,6 +61,10 @@ class SymmetricFactor {
     });
   }
 
+  /// From now on real factors are read in single precision, which takes half the time for one column and is
+  /// enough for a preconditioner; until the next factorise(). Nothing happens to complex ones.
+  void round();
+
   /// Solves for all columns in place. Throws InputError when the number of rows is wrong, NumericsError when
   /// there are no factors.
   void solve(Right& right) {
@@ -152,6 +156,8 @@ class SymmetricFactor {
 
   void require_factor(Eigen::Index rows) const;
   void solve_columns(int columns);
+  template <class Use>
+  void with_L(int f, const FrontMatrix<T>& matrix, const Use& use) const;
   template <int columns>
   void solve_columns();
   template <int columns>
@@ -168,13 +174,14 @@ class SymmetricFactor {
   std::vector<Workspace> workspaces_;  ///< one a part; the first one is also the top's
   std::ptrdiff_t panels_size_ = 0, stack_size_ = 0;
   Eigen::VectorXd panels_;  ///< L of all fronts
-  Eigen::VectorXd stack_;   ///< update matrices
-  Eigen::VectorXd scale_;   ///< of each row of the matrix
+  Eigen::VectorXf rounded_;
+  Eigen::VectorXd stack_;  ///< update matrices
+  Eigen::VectorXd scale_;  ///< of each row of the matrix
   Eigen::Matrix<T, Eigen::Dynamic, 1> inverse_pivots_;
   Eigen::Matrix<T, Eigen::Dynamic, 1> x_;  ///< right-hand sides in the order of elimination, row by row
   Eigen::Matrix<T, Eigen::Dynamic, 1>
       updates_;  ///< what fronts pass to their parents, like AssemblyTree::rows
-  bool factorised_ = false;
+  bool factorised_ = false, is_rounded_ = false;
 };
 
 }  // namespace esfem

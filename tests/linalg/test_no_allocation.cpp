@@ -76,6 +76,8 @@ TEST_F(NoAllocation, InFactorisationsAndSolvesFromTheSecondCallOn) {
   EXPECT_EQ(allocations_of_second_call([&] {
               spd.factorise(2, M, 1, A);
               spd.solve(u);
+              spd.round();
+              spd.solve(u);
             }),
             0);
   BlockSolver block(pattern);

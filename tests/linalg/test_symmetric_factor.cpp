@@ -104,6 +104,34 @@ TYPED_TEST(AllKinds, AgreesWithDenseFactorisationsOnRandomMatrices) {
 }
 
 // The negative test of all these: a block that is not transposed where the order exchanges its nodes.
+TYPED_TEST(AllKinds, RoundedFactorsHaveSingleAccuracyUntilTheNextFactorisation) {
+  using T = typename TypeParam::T;
+  constexpr int b = TypeParam::b;
+  const SparsityPattern pattern = graph_pattern(400, grid_edges(20));
+  SymmetricFactor<T, b> factor(pattern, any_sign<T, b>());
+  EXPECT_THROW(factor.round(), NumericsError);
+  const auto blocks = random_blocks<T, b>(pattern);
+  const Dense<T> K = dense_matrix<T, b>(pattern, blocks);
+  const auto residual = [&](int columns) {
+    const Dense<T> right = Dense<T>::Random(b * pattern.size, columns);
+    Dense<T> y = right;
+    factor.solve(y);
+    return relative_residual(K, y, right);
+  };
+  factor.factorise(entries<T, b>(blocks));
+  factor.round();
+  for (int columns = 1; columns <= 4; ++columns) {
+    EXPECT_LT(residual(columns), 1e-5);
+    if (std::is_same_v<T, double>) {
+      EXPECT_GT(residual(columns), 1e-10);
+    } else {
+      EXPECT_LT(residual(columns), 1e-14);
+    }
+  }
+  factor.factorise(entries<T, b>(blocks));
+  EXPECT_LT(residual(1), 1e-14);
+}
+
 TEST(SymmetricFactor, BlocksBelowTheDiagonalAreNotSymmetric) {
   const SparsityPattern pattern = special_patterns()[8].pattern;
   auto blocks = random_blocks<double, 2>(pattern);
