@@ -10,9 +10,10 @@ namespace esfem {
 
 /// Nodal values and their name in files and tables, N x c.
 struct NodalField {
-  std::string name;
-  Field values;
+  std::string name;  ///< "nu", "H"; by this `find` finds it
+  Field values;      ///< one row a node
 };
+/// The fields of one surface, in the order in which files have them.
 using NodalFields = std::vector<NodalField>;
 
 /// The field of that name; nullptr when there is none.

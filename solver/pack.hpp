@@ -47,6 +47,7 @@ using std::exp;
 using std::sin;
 using std::sqrt;
 
+/// Lane by lane; NaN where p is negative.
 [[gnu::always_inline]] inline Pack sqrt(const Pack& p) {
   Pack result;
   for (int lane = 0; lane < pack_size; ++lane) result[lane] = std::sqrt(p[lane]);
@@ -73,6 +74,8 @@ template <class Function>
   return result;
 }
 
+/// Lane by lane, by the functions of doubles.
+/// @{
 [[gnu::always_inline]] inline Pack exp(const Pack& p) {
   return apply([](double value) { return std::exp(value); }, p);
 }
@@ -82,6 +85,7 @@ template <class Function>
 [[gnu::always_inline]] inline Pack cos(const Pack& p) {
   return apply([](double value) { return std::cos(value); }, p);
 }
+/// @}
 
 /// Whether the lanes are all true.
 inline bool all(const Lanes& lanes) {
@@ -90,6 +94,7 @@ inline bool all(const Lanes& lanes) {
   return result;
 }
 
+/// Sum over the lanes, in their order.
 inline double sum_of_lanes(const Pack& p) {
   double sum = 0;
   for (int lane = 0; lane < pack_size; ++lane) sum += p[lane];
@@ -101,6 +106,7 @@ inline double sum_of_lanes(const Pack& p) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/// out = a x b; out must be neither of them.
 inline void cross(const Pack (&a)[3], const Pack (&b)[3], Pack (&out)[3]) {
   out[0] = a[1] * b[2] - a[2] * b[1];
   out[1] = a[2] * b[0] - a[0] * b[2];

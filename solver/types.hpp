@@ -3,9 +3,12 @@
 
 #include <Eigen/Dense>
 
+/// The library. The main page lists its folders.
 namespace esfem {
 
+/// A point or a vector in space, as a column.
 using Vec3 = Eigen::Vector3d;
+/// A linear map of vectors in space: a Hessian, a Weingarten map.
 using Mat3 = Eigen::Matrix3d;
 
 /// Nodal values of a finite element function: N rows (nodes) x components, column-major, so that column l is

@@ -10,6 +10,7 @@
 
 namespace esfem {
 
+/// Quantities of a run by name, each with one value a recorded step; "t" has the times.
 using Series = std::map<std::string, std::vector<double>>;
 
 /// Appends the geometry of the discrete surface Gamma_h[x] at time t to the series "t", "area", "volume"
@@ -41,8 +42,10 @@ double fitted_sphere_radius(const Field& x);
 /// The radii of the torus around the x3 axis (or one parallel to it) that fits the nodes best: least squares
 /// of rho² + x3² = 2 major rho + const, distances from the axis through the nodes' mean.
 struct TorusRadii {
-  double major, minor;
+  double major;  ///< of the circle
+  double minor;  ///< of the tube around it
 };
+/// Fits them to the nodes x (N x 3).
 TorusRadii fitted_torus_radii(const Field& x);
 
 /// The time at which a shrinking surface has become a point or a line: when its area, extrapolated linearly

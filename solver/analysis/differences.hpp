@@ -9,8 +9,8 @@ namespace esfem {
 
 /// A discrete surface and functions on it.
 struct DiscreteFunctions {
-  Mesh mesh;
-  NodalFields fields;
+  Mesh mesh;           ///< with the positions at the time that is compared
+  NodalFields fields;  ///< nodal values of the functions
 };
 
 /// How far a discrete solution is from a finer one, on meshes that need not be nested: functions u_h of the

@@ -25,8 +25,10 @@ Series thinned(const Series& series, std::size_t most);
 
 /// The number of the entry with the largest (smallest) value of `name` for times in [from, to], the first of
 /// equal ones. Throws InputError when there is none.
+/// @{
 std::size_t largest_in(const Series& series, const std::string& name, double from, double to);
 std::size_t smallest_in(const Series& series, const std::string& name, double from, double to);
+/// @}
 
 /// The period of a quantity sampled at equal steps: the lag L in [shortest, longest] for which the mean of
 /// (f(t + L) - f(t))² over t in [from, end - longest] is least, between two steps by a parabola. Throws

@@ -15,7 +15,8 @@ namespace esfem {
 
 /// Squared L2 norm and H1 seminorm of each component.
 struct SquaredNorms {
-  Eigen::VectorXd L2, H1_semi;
+  Eigen::VectorXd L2;       ///< one a component
+  Eigen::VectorXd H1_semi;  ///< one a component
 };
 
 /// Nodal norms (kll19 (7.1)-(7.2)): eᵀM(x*)e and eᵀA(x*)e per column of e; the matrices are assembled at x*.
@@ -56,6 +57,7 @@ class ErrorRecorder {
   void record(const State& state) {
     record(state.t, quantities_.of(state));
   }
+  /// The same, as an observer.
   template <class State>
   void operator()(int, const State& state) {
     record(state);
@@ -63,7 +65,9 @@ class ErrorRecorder {
   /// w: the numerical components at time t, N x exact.components(), in the order of exact.quantities.
   void record(double t, const Field& w);
 
+  /// Over the steps recorded so far.
   const Errors& maxima() const { return maxima_; }
+  /// "t", and the error of each quantity and norm, one value a step.
   const std::map<std::string, std::vector<double>>& series() const { return series_; }
 
  private:

@@ -28,8 +28,11 @@ class Quantities {
     return columns(state.x, std::move(fields));
   }
 
+  /// The quantities, in the order of their columns.
+  /// @{
   auto begin() const { return quantities_.begin(); }
   auto end() const { return quantities_.end(); }
+  /// @}
 
  private:
   Field columns(const Field& x, NodalFields fields);

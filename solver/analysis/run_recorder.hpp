@@ -16,12 +16,12 @@ namespace esfem {
 /// `every_time` (0: none), and at every `every`-th step (0: none); in any case at the start and at the end.
 /// The steps of the run do not change.
 struct SnapshotPlan {
-  std::string pvd;  ///< the collection, "run.pvd"; empty: no snapshots are wanted
-  std::vector<double> times;
-  int every = 0;
+  std::string pvd;             ///< the collection, "run.pvd"; empty: no snapshots are wanted
+  std::vector<double> times;   ///< increasing
+  int every = 0;               ///< in steps
   RunLabel run = {};           ///< description of the run in each snapshot
   Vec3 origin = Vec3::Zero();  ///< is added to the positions of snapshots
-  double every_time = 0;
+  double every_time = 0;       ///< in time
 };
 
 /// Records a run on one mesh: a time series, snapshots, and the newest surface. A step that cannot be
@@ -30,10 +30,10 @@ class RunRecorder {
  public:
   /// The newest surface with its nodal fields.
   struct Surface {
-    int step = 0;
-    double t = 0;
-    Field x;
-    NodalFields fields;
+    int step = 0;        ///< its number in the run
+    double t = 0;        ///< its time
+    Field x;             ///< nodes, N x 3; empty as long as nothing is recorded
+    NodalFields fields;  ///< of the flow
   };
 
   /// Whether the series have kappa_energy, which costs a factorisation a step.
@@ -56,11 +56,12 @@ class RunRecorder {
 
   /// Quantities of the newest surface from the flow's own nu and H, and from the surface itself.
   struct CurvatureComparison {
-    double deviation;             ///< DiscreteCurvature::deviation
-    double energy, kappa_energy;  ///< 1/2 int H², 1/2 int |kappa|²
-    DiscreteCurvature::AreaRates rates;
-    double rate_difference() const;    ///< of the rates of area, relative to their scale
-    double energy_difference() const;  ///< relative to kappa_energy
+    double deviation;                    ///< DiscreteCurvature::deviation
+    double energy;                       ///< 1/2 int H²
+    double kappa_energy;                 ///< 1/2 int |kappa|²
+    DiscreteCurvature::AreaRates rates;  ///< of the change of area
+    double rate_difference() const;      ///< of the rates of area, relative to their scale
+    double energy_difference() const;    ///< relative to kappa_energy
   };
   /// Compares them, where the flow has nu, H and v of its own; costs two factorisations.
   std::optional<CurvatureComparison> compare_curvature();
@@ -68,16 +69,23 @@ class RunRecorder {
   /// Writes the newest surface as the last snapshot, unless it is written.
   void finish();
 
+  /// What has been recorded; others may add series of their own.
+  /// @{
   Series& series() { return series_; }
   const Series& series() const { return series_; }
+  /// @}
+
   /// Whether a step has been recorded.
   bool empty() const { return newest_.x.size() == 0; }
+  /// The surface of the last step recorded.
   const Surface& newest() const { return newest_; }
 
+  /// A snapshot that has been written.
   struct Snapshot {
-    double t;
+    double t;          ///< its time
     std::string file;  ///< without folder
   };
+  /// Those of the collection, also from before a run was resumed.
   const std::vector<Snapshot>& snapshots() const { return snapshots_; }
 
   /// All that has been recorded, for CBOR.

@@ -10,12 +10,13 @@
 
 namespace esfem {
 
+/// Those of an element of degree max_degree.
 constexpr int max_nodes_per_element = 15;
 
 /// pack_size elements that are treated as one, at given positions of the nodes.
 struct Batch {
-  int number;
-  const int* node;                   ///< node[8 a + lane] is local node a of the lane's element
+  int number;                        ///< among those of the ElementBatches, from 0
+  const int* node;                   ///< node[pack_size a + lane] is local node a of the lane's element
   Pack one;                          ///< 1, and 0 in lanes that only fill the last batch up
   Pack x[max_nodes_per_element][3];  ///< positions of the nodes
   Pack direction[3];                 ///< unit normal of the corner triangle
@@ -24,9 +25,11 @@ struct Batch {
 
 /// The first order geometry of the element map at one quadrature point of a batch.
 struct BatchPoint {
-  Pack tangent_xi[3], tangent_eta[3];
-  Pack normal[3];  ///< t_xi x t_eta; its length is the Jacobian
-  Pack jacobian, inverse_jacobian;
+  Pack tangent_xi[3];     ///< derivative of the element map with respect to xi
+  Pack tangent_eta[3];    ///< with respect to eta
+  Pack normal[3];         ///< t_xi x t_eta; its length is the Jacobian
+  Pack jacobian;          ///< |normal|: area on the surface per area dxi deta
+  Pack inverse_jacobian;  ///< 1/|normal|
 
   /// From the tangents.
   void set_normal() {
@@ -39,7 +42,8 @@ struct BatchPoint {
 
 /// Contravariant tangents: grad u = u_xi dual_xi + u_eta dual_eta, from the first fundamental form.
 struct DualTangents {
-  Pack xi[3], eta[3];
+  Pack xi[3];   ///< xi . t_xi = 1, xi . t_eta = 0
+  Pack eta[3];  ///< eta . t_xi = 0, eta . t_eta = 1
 
   /// The inverse of the first fundamental form, applied to the tangents, is t_eta x n and n x t_xi over |n|².
   explicit DualTangents(const BatchPoint& point) {
@@ -59,14 +63,21 @@ class ElementBatches {
  public:
   /// One shape function at one quadrature point.
   struct Shape {
-    double value, dxi, deta;
+    double value;  ///< phi_a
+    double dxi;    ///< d phi_a/d xi
+    double deta;   ///< d phi_a/d eta
   };
 
+  /// Copies what it needs of the elements, which are of this degree, and of the rule.
   ElementBatches(const Connectivity& elements, int degree, const Quadrature& rule);
 
+  /// The number of batches.
   int count() const { return (element_count_ + pack_size - 1) / pack_size; }
+  /// The number of nodes of an element.
   int nodes() const { return nodes_; }
+  /// The number of points of the rule.
   int points() const { return static_cast<int>(weights_.size()); }
+  /// The weight of a point, on the reference triangle of area 1/2.
   double weight(int point) const { return weights_[point]; }
   /// The `nodes()` shape functions at a point.
   const Shape* shapes(int point) const { return &shapes_[point * nodes_]; }

@@ -8,7 +8,7 @@ namespace esfem {
 
 /// One quadrature point of a batch of elements, lifted to the exact surface (kll19 §3.4).
 struct LiftedPoints {
-  int q;
+  int q;                     ///< its number in the rule
   SurfacePoints on_surface;  ///< the closest points
   Pack dA;                   ///< weight of the rule times the lifted element's area; 0 in lanes that fill up
   DualTangents dual;         ///< of the lifted elements: gradients of lifted functions from reference ones

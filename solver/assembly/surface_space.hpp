@@ -26,8 +26,8 @@ struct PointData {
 /// flux[l] . grad phi_j for the first `fluxes` components.
 template <int outputs, int fluxes>
 struct Integrand {
-  Pack value[outputs];
-  Pack flux[fluxes > 0 ? fluxes : 1][3];
+  Pack value[outputs];                    ///< tested with phi_j
+  Pack flux[fluxes > 0 ? fluxes : 1][3];  ///< tested with grad phi_j; only its tangential part counts
 };
 
 /// S_h[x] of kll19 §3.1: isoparametric P_k functions on the surface Gamma_h[x] that the nodal vector x
@@ -38,17 +38,24 @@ struct Integrand {
 /// node.
 class SurfaceSpace {
  public:
+  /// The degree and the elements of the mesh, which are copied; all sums are by this rule.
   SurfaceSpace(const Mesh& mesh, const Quadrature& rule);
   /// With default_quadrature(mesh.degree).
   explicit SurfaceSpace(const Mesh& mesh);
 
+  /// k of P_k.
   int degree() const { return degree_; }
+  /// N, the number of nodes.
   int dofs() const { return pattern_->size; }
+  /// E, the number of elements.
   int element_count() const { return static_cast<int>(elements_.rows()); }
+  /// E x (k+1)(k+2)/2, as in the mesh.
   const Connectivity& elements() const { return elements_; }
+  /// The rule of all sums.
   const Quadrature& quadrature() const { return rule_; }
   /// The elements with the rule's shape functions, for sums over quadrature points outside this class.
   const ElementBatches& batches() const { return batches_; }
+  /// That of all matrices of the space, for solvers.
   std::shared_ptr<const SparsityPattern> pattern() const { return pattern_; }
   /// The characteristic_length of the mesh that the space was made for; exactly 1 for surfaces of size one.
   double length() const { return length_; }

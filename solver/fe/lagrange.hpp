@@ -5,6 +5,7 @@
 
 namespace esfem {
 
+/// Largest degree k of elements P_k.
 constexpr int max_degree = 4;
 
 /// Number of nodes of a P_k triangle: (k+1)(k+2)/2. Throws InputError unless 1 <= k <= 4.
@@ -17,7 +18,9 @@ Eigen::Matrix<double, Eigen::Dynamic, 2> reference_nodes(int degree);
 
 /// Shape functions and their reference derivatives, each (points x nodes).
 struct ShapeTable {
-  Eigen::MatrixXd value, dxi, deta;
+  Eigen::MatrixXd value;  ///< phi_a
+  Eigen::MatrixXd dxi;    ///< d phi_a/d xi
+  Eigen::MatrixXd deta;   ///< d phi_a/d eta
 };
 
 /// P_k Lagrange shape functions at points (rows xi, eta).

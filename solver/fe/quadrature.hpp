@@ -9,9 +9,9 @@ namespace esfem {
 /// Quadrature on the reference triangle; the weights sum to its area 1/2.
 struct Quadrature {
   Eigen::Matrix<double, Eigen::Dynamic, 2> points;  ///< rows (xi, eta)
-  Eigen::VectorXd weights;
-  int degree = 0;    ///< exact for polynomials up to this total degree
-  std::string name;  ///< e.g. "symmetric degree 6 (12 points)", "conical 6x6"
+  Eigen::VectorXd weights;                          ///< one a point
+  int degree = 0;                                   ///< exact for polynomials up to this total degree
+  std::string name;                                 ///< e.g. "symmetric degree 6 (12 points)", "conical 6x6"
 };
 
 /// Symmetric rule with positive weights and inner points that is exact to at least this degree.

@@ -13,8 +13,10 @@ namespace esfem {
 
 /// The area and the volume that a flow prescribes at time t. One that is not prescribed is empty.
 struct AreaAndVolume {
-  std::function<double(double t)> area, volume;
+  std::function<double(double t)> area;    ///< positive
+  std::function<double(double t)> volume;  ///< enclosed, outward normal: > 0
 
+  /// How many of them are prescribed.
   int count() const { return (area ? 1 : 0) + (volume ? 1 : 0); }
 };
 
@@ -40,7 +42,8 @@ double volume_of(double area, double reduced_volume);
 /// ones (not their rates, which would let both drift).
 class Multipliers {
  public:
-  enum Quantity { area, volume };  ///< also the entries of lambda
+  /// The quantities; also the entries of lambda.
+  enum Quantity { area, volume };
 
   /// The space must outlive the object.
   Multipliers(const SurfaceSpace& space, AreaAndVolume prescribed);
@@ -59,6 +62,7 @@ class Multipliers {
   /// ones up to round-off. Throws NumericsError when the unknowns are not independent.
   bool correct(double t, const Field& x, const std::array<Field, 2>& x_rates, Field& lambda);
 
+  /// How often a flow calls `correct` in a step before it gives up.
   static constexpr int most_iterations = 20;
 
  private:

@@ -17,11 +17,14 @@ namespace esfem {
 /// For the lumped scheme of the paper (P1) give the space the rule of the vertices, vertex_quadrature().
 class BgnFlow {
  public:
+  /// What a step starts from and computes.
   struct State {
-    double t = 0;
-    Field x;  ///< N x 3
-    Field v;  ///< N x 3: (x^n - x^{n-1})/tau, with its tangential part
-    Field H;  ///< N x 1
+    double t = 0;  ///< time of the nodal values
+    Field x;       ///< N x 3
+    Field v;       ///< N x 3: (x^n - x^{n-1})/tau, with its tangential part
+    Field H;       ///< N x 1
+
+    /// Names of the fields, for checkpoints and messages (History).
     static constexpr NamedField<State> fields[] = {{"x", &State::x}, {"v", &State::v}, {"H", &State::H}};
   };
 

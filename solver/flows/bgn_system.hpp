@@ -31,6 +31,7 @@ namespace esfem {
 /// 5, 1995), and e -> 0 crosses no singular matrix: the signs stay.
 class BgnSystem {
  public:
+  /// The symbolic phase; keeps no reference to the space. Throws NumericsError when METIS fails.
   explicit BgnSystem(const SurfaceSpace& space);
 
   /// M, A and N_a on Gamma_h[x].
@@ -39,7 +40,9 @@ class BgnSystem {
   /// needed. Throws NumericsError when the matrix is singular or not finite.
   void solve(const SymmetricMatrix& S, const Field& r, const Field& x, Field& H, Field& dx);
 
+  /// Mass matrix of the last assemble.
   const SymmetricMatrix& M() const { return M_; }
+  /// Its stiffness matrix.
   const SymmetricMatrix& A() const { return A_; }
 
  private:

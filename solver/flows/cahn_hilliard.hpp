@@ -17,12 +17,15 @@
 
 namespace esfem {
 
+/// What a step starts from and computes.
 struct CahnHilliardState {
-  double t = 0;
-  Field x;   ///< N x 3
-  Field u;   ///< N x 1
-  Field w;   ///< N x 1
-  Field Mu;  ///< N x 1: M(x) u, so that no old matrix is needed
+  double t = 0;  ///< time of the nodal values
+  Field x;       ///< N x 3
+  Field u;       ///< N x 1
+  Field w;       ///< N x 1
+  Field Mu;      ///< N x 1: M(x) u, so that no old matrix is needed
+
+  /// Names of the fields, for checkpoints and messages (History).
   static constexpr NamedField<CahnHilliardState> fields[] = {{"x", &CahnHilliardState::x},
                                                              {"u", &CahnHilliardState::u},
                                                              {"w", &CahnHilliardState::w},
@@ -56,6 +59,7 @@ struct Mobility {
 /// size. The system is regular for every m >= 0, and A gives a good pivot even where m = 0, as U comes first.
 class CahnHilliardScheme {
  public:
+  /// The type of the states.
   using State = CahnHilliardState;
 
   /// theta (N x 1), see cahn_hilliard_theta; none when it is empty. tangential: W in the nodes; none: they
@@ -66,8 +70,11 @@ class CahnHilliardScheme {
   /// next.x at next.t, M and A there, and the extrapolated u~. Throws SingularityError where elements are
   /// degenerate.
   void prepare(const BdfStep<State>& step, State& next);
+  /// Of the last prepare, N x 1.
   const Field& u_tilde() const { return u_tilde_; }
+  /// N x 1, or empty: none.
   const Field& theta() const { return theta_; }
+  /// For a run that resumes.
   void set_theta(Field theta) { theta_ = std::move(theta); }
 
   /// After prepare: solves for u and w. loads: N x 2, f(u~) and g(u~); b: nodal values at next.t, N x 1
@@ -112,6 +119,7 @@ class CahnHilliardScheme {
 template <class Problem>
 class CahnHilliard {
  public:
+  /// The type of the states.
   using State = CahnHilliardState;
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
@@ -140,6 +148,7 @@ class CahnHilliard {
   nlohmann::json progress() const {
     return scheme_.theta().size() > 0 ? packed(scheme_.theta()) : nlohmann::json();
   }
+  /// Restores what progress() of an earlier run has returned.
   void resume(const nlohmann::json& saved) {
     if (!saved.is_null()) scheme_.set_theta(unpacked(saved));
   }
@@ -190,10 +199,13 @@ CahnHilliardState cahn_hilliard_start(const SurfaceSpace& space, const Problem& 
 
 /// The double-well potential without f and b: g = F'(u) = u³ - u, F = (u² - 1)²/4.
 struct DoubleWell {
+  /// The functions of a Problem: f = 0, g, its derivative with respect to u, and no b.
+  /// @{
   Pack f(double, const PointData<1>&) const { return Pack{}; }
   Pack g(double, const PointData<1>& p) const { return p.u[0] * (p.u[0] * p.u[0] - 1.0); }
   Pack dg(double, const PointData<1>& p) const { return 3.0 * p.u[0] * p.u[0] - 1.0; }
   void b(double, const Field&, Field&) const {}
+  /// @}
 };
 
 /// Ginzburg-Landau energy, integral of epsilon/2 |grad u|² + F(u)/epsilon over Gamma_h[x] (bk22 (2.3) with

@@ -18,20 +18,26 @@ namespace esfem {
 
 /// How surface evolution coupled to diffusion is discretised (see CoupledDiffusion).
 struct CoupledDiffusionVariant {
+  /// The mass matrices of u (and v) at the times before the new one.
   enum Mass {
-    extrapolated,  ///< (2.19): M(x̃^{n-j}) u^{n-j}, kept from the steps before
-    reassembled    ///< (7.2): M(x^{n-j}) u^{n-j}; loses an order in time
-  } mass = extrapolated;
-  enum Law { regularised, dynamic } law = regularised;
+    extrapolated,         ///< (2.19): M(x̃^{n-j}) u^{n-j}, kept from the steps before
+    reassembled           ///< (7.2): M(x^{n-j}) u^{n-j}; loses an order in time
+  } mass = extrapolated;  ///< of the history
+
+  /// The velocity laws of CoupledDiffusion.
+  enum Law { regularised, dynamic } law = regularised;  ///< of the velocity
 };
 
+/// What a step starts from and computes.
 struct CoupledDiffusionState {
-  double t = 0;
-  Field x;   ///< N x 3
-  Field v;   ///< N x 3
-  Field u;   ///< N x m
-  Field Mu;  ///< N x m: M u with the mass matrix of the variant, so that no old matrix is needed
-  Field Mv;  ///< N x 3: the same for v (history of the dynamic law)
+  double t = 0;  ///< time of the nodal values
+  Field x;       ///< N x 3
+  Field v;       ///< N x 3
+  Field u;       ///< N x m
+  Field Mu;      ///< N x m: M u with the mass matrix of the variant, so that no old matrix is needed
+  Field Mv;      ///< N x 3: the same for v (history of the dynamic law)
+
+  /// Names of the fields, for checkpoints and messages (History).
   static constexpr NamedField<CoupledDiffusionState> fields[] = {{"x", &CoupledDiffusionState::x},
                                                                  {"v", &CoupledDiffusionState::v},
                                                                  {"u", &CoupledDiffusionState::u},
@@ -39,8 +45,9 @@ struct CoupledDiffusionState {
                                                                  {"Mv", &CoupledDiffusionState::Mv}};
 };
 
+/// Coefficients of the velocity laws and of diffusion.
 struct CoupledDiffusionParameters {
-  double alpha = 1;                     ///< > 0
+  double alpha = 1;                     ///< positive
   double beta = 1;                      ///< >= 0; the dynamic law has no such term
   std::vector<double> diffusion = {1};  ///< D_l >= 0, one per species
   double reaction_rate = 0;  ///< of f, 1/time, for messages about steps too large for it; 0: not known
@@ -52,7 +59,8 @@ using NodalFunction = std::function<void(double t, const Field& x, const Field& 
 /// alpha > 0 and beta >= 0 of the velocity laws as functions of the surface, in the place of the parameters;
 /// none: the parameters. They are interpolated in the nodes, with x̃ and ũ.
 struct VariableLaw {
-  NodalFunction alpha = {}, beta = {};
+  NodalFunction alpha = {};  ///< positive
+  NodalFunction beta = {};   ///< >= 0; the dynamic law has none
 };
 
 /// A step of nick18 (2.18)-(2.21) with its loads given: what does not depend on f and g.
@@ -63,6 +71,7 @@ struct VariableLaw {
 ///   M(x̃) v + A_alpha(x̃) v + A_beta(x̃) x + int grad beta . phi = g(x̃, ũ).
 class CoupledDiffusionScheme {
  public:
+  /// The type of the states.
   using State = CoupledDiffusionState;
 
   /// Throws InputError for parameters out of range and when there is not one D per species.
@@ -72,7 +81,9 @@ class CoupledDiffusionScheme {
 
   /// (2.18) for x and u, and M(x̃), A(x̃). Throws SingularityError where Gamma_h[x̃] is degenerate.
   void extrapolate(const BdfStep<State>& step);
+  /// The extrapolated nodes, N x 3.
   const Field& x_tilde() const { return x_tilde_; }
+  /// The extrapolated concentrations, N x m.
   const Field& u_tilde() const { return u_tilde_; }
 
   /// After extrapolate: solves (2.19)-(2.21) for all fields of next. loads: N x (m + 3), f(x̃, ũ) and g(x̃,
@@ -117,6 +128,7 @@ class CoupledDiffusionScheme {
 template <class Problem>
 class CoupledDiffusion {
  public:
+  /// The type of the states.
   using State = CoupledDiffusionState;
 
   /// The space gives elements, degree and quadrature; it must outlive the flow. Throws InputError for
@@ -160,6 +172,7 @@ using PointwiseKinetics = std::function<void(double t, const Pack* point, Pack* 
 /// surfaces, converges with order k - 1 in L2.
 class CoupledKinetics {
  public:
+  /// The type of the states.
   using State = CoupledDiffusionState;
 
   /// The number of species is that of the diffusion coefficients. Otherwise as CoupledDiffusion.

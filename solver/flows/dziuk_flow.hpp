@@ -26,10 +26,13 @@ namespace esfem {
 /// Unknown nodal vector: positions x. The velocity v = 1/tau sum_{j>=0} delta_j x^{n-j} is kept beside it.
 class DziukFlow {
  public:
+  /// What a step starts from and computes.
   struct State {
-    double t = 0;
-    Field x;  ///< N x 3
-    Field v;  ///< N x 3
+    double t = 0;  ///< time of the nodal values
+    Field x;       ///< N x 3
+    Field v;       ///< N x 3
+
+    /// Names of the fields, for checkpoints and messages (History).
     static constexpr NamedField<State> fields[] = {{"x", &State::x}, {"v", &State::v}};
   };
 

@@ -12,8 +12,8 @@ namespace esfem {
 /// Willmore flow by Dziuk's scheme (Numer. Math. 111, 2008; kll21 (2.13)), linearly implicit: find x^n and
 /// w^n with
 ///   (w^n, psi) = -(grad x^n, grad psi),
-///   ((x^n - x^{n-1})/tau, phi) = 1/2 (|w^{n-1}|², div phi) + (grad w^n, grad phi) + (div w^n, div phi)
-///                                - (D(phi) grad x^{n-1}, grad w^n),   D(phi) = grad phi + (grad phi)^T,
+///   ((x^n - x^{n-1})/tau, phi) = 1/2 (|w^{n-1}|², div phi) + (grad w^n, grad phi) + (div w^n, div phi) -
+///                                (D(phi) grad x^{n-1}, grad w^n),   D(phi) = grad phi + (grad phi)^T,
 /// for all psi, phi in S_h^3, on Gamma_h[x^{n-1}]. w approximates -H nu. In space the right-hand side is
 /// minus the derivative of the discrete energy 1/2 int |w|², so that the semi-discrete flow decreases it.
 ///
@@ -31,17 +31,21 @@ class DziukWillmoreFlow {
   /// nodes x, M w^n = -A x^{n-1} - B (x^n - x^{n-1}) (linearised; not in the literature).
   enum Curvature { dziuk, linearised };
 
+  /// What a step starts from and computes.
   struct State {
-    double t = 0;
-    Field x;  ///< N x 3
-    Field v;  ///< N x 3: (x^n - x^{n-1})/tau
-    Field w;  ///< N x 3
+    double t = 0;  ///< time of the nodal values
+    Field x;       ///< N x 3
+    Field v;       ///< N x 3: (x^n - x^{n-1})/tau
+    Field w;       ///< N x 3
+
+    /// Names of the fields, for checkpoints and messages (History).
     static constexpr NamedField<State> fields[] = {{"x", &State::x}, {"v", &State::v}, {"w", &State::w}};
   };
 
   /// The space gives elements, degree and quadrature; it must outlive the flow.
   explicit DziukWillmoreFlow(const SurfaceSpace& space, Curvature curvature = dziuk);
   ~DziukWillmoreFlow();
+  /// Moves; a flow cannot be copied.
   DziukWillmoreFlow(DziukWillmoreFlow&&);
 
   /// One step; q must be 1 (InputError), the scheme is of first order. Throws SingularityError where the

@@ -12,8 +12,11 @@ class PowerLaw {
   /// Throws InputError unless k is finite and not 0.
   explicit PowerLaw(double power);
 
+  /// k.
   double power() const { return power_; }
+  /// V(H) for H > 0; for k = 1 for every H.
   double V(double H) const;
+  /// The H with this V(H); of no meaning where `has` is false.
   double H(double V) const;
   /// Whether V is the value of some H > 0.
   bool has(double V) const { return power_ == 1 || (power_ > 0 ? V > 0 : V < 0); }
@@ -36,14 +39,19 @@ class PowerLaw {
 /// Unknown nodal vectors: positions x, velocity v = -V nu, and u = (nu, V).
 class GeneralisedMeanCurvatureFlow {
  public:
+  /// How v is taken from V nu.
   using Velocity = MeanCurvatureFlow::Variant::Velocity;
+  /// Tangential motion of the nodes.
   using Tangential = MeanCurvatureFlow::Variant::Tangential;
 
+  /// What a step starts from and computes.
   struct State {
-    double t = 0;
-    Field x;  ///< N x 3
-    Field v;  ///< N x 3
-    Field u;  ///< N x 4: nu_1, nu_2, nu_3, V
+    double t = 0;  ///< time of the nodal values
+    Field x;       ///< N x 3
+    Field v;       ///< N x 3
+    Field u;       ///< N x 4: nu_1, nu_2, nu_3, V
+
+    /// Names of the fields, for checkpoints and messages (History).
     static constexpr NamedField<State> fields[] = {{"x", &State::x}, {"v", &State::v}, {"u", &State::u}};
   };
 
@@ -59,6 +67,7 @@ class GeneralisedMeanCurvatureFlow {
 
   /// What tangential motion keeps from step to step, for checkpoints; null without.
   nlohmann::json progress() const { return deformation_ ? deformation_->progress() : nullptr; }
+  /// Restores what progress() of an earlier run has returned.
   void resume(const nlohmann::json& saved) {
     if (deformation_) deformation_->resume(saved);
   }
@@ -78,8 +87,8 @@ class GeneralisedMeanCurvatureFlow {
   Field x_tilde_, u_tilde_, loads_, u_v_, f_, sum_, D_sum_, H_;
 };
 
-/// The state with given positions, normals (N x 3) and mean curvatures (N x 1), v = -V nu in the nodes; t =
-/// 0. Throws InputError with the node (from 1) where H is not positive, unless V = H.
+/// The state with given positions, normals (N x 3) and mean curvatures (N x 1), v = -V nu in the nodes;
+/// t = 0. Throws InputError with the node (from 1) where H is not positive, unless V = H.
 GeneralisedMeanCurvatureFlow::State generalised_mean_curvature_state(const PowerLaw& law, Field x,
                                                                      const Field& nu, const Field& H);
 

@@ -12,6 +12,7 @@ namespace esfem {
 /// A step of LinearisedCahnHilliard with its loads given: what does not depend on g.
 class LinearisedCahnHilliardScheme {
  public:
+  /// The type of the states.
   using State = CahnHilliardState;
 
   /// Throws InputError unless epsilon > 0, NumericsError when the symbolic analysis fails.
@@ -59,6 +60,7 @@ class LinearisedCahnHilliardScheme {
 template <class Problem>
 class LinearisedCahnHilliard {
  public:
+  /// The type of the states.
   using State = CahnHilliardState;
 
   /// The space gives elements, degree and quadrature; it must outlive the flow. newton_tolerance: g is

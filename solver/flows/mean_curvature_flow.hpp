@@ -19,26 +19,31 @@ namespace esfem {
 /// Unknown nodal vectors: positions x, velocity v = -H nu, and u = (nu, H).
 class MeanCurvatureFlow {
  public:
+  /// What of the scheme is a choice; the default is that of kll19.
   struct Variant {
     /// ritz: v_h is the Ritz projection (3.1a) of -H_h nu_h, with K = M/L² + A, L the length of the space, so
     /// that it does not depend on units (the papers have L = 1); interpolation: its nodal interpolation
     /// (kll21 Remark 3.1).
-    enum Velocity { ritz, interpolation } velocity = ritz;
+    enum Velocity { ritz, interpolation } velocity = ritz;  ///< how v_h is found, without tangential motion
     bool normalise = false;  ///< rescale nu_h to unit length at every node after each step (§13.2)
     double stabilise = 0;    ///< alpha >= 0 of the term -alpha int (nu_h - nu_Gamma_h) . phi of §14; 1/time
+
     /// Tolerance of nu and H, see Reinitialisation; 0: they are never taken from the surface. Otherwise v
     /// belongs to the new u, not to the extrapolated one.
     double reinitialise = 0;
     /// minimal_deformation: v_h is the velocity of MinimalDeformation, of normal speed -H_h, instead of that
     /// of `velocity`; the derivatives of nu and H along it have a convective term (MovingCurvatureLoad).
-    enum Tangential { none, minimal_deformation } tangential = none;
+    enum Tangential { none, minimal_deformation } tangential = none;  ///< none: nodes move along normals
   };
 
+  /// What a step starts from and computes.
   struct State {
-    double t = 0;
-    Field x;  ///< N x 3
-    Field v;  ///< N x 3
-    Field u;  ///< N x 4: nu_1, nu_2, nu_3, H
+    double t = 0;  ///< time of the nodal values
+    Field x;       ///< N x 3
+    Field v;       ///< N x 3
+    Field u;       ///< N x 4: nu_1, nu_2, nu_3, H
+
+    /// Names of the fields, for checkpoints and messages (History).
     static constexpr NamedField<State> fields[] = {{"x", &State::x}, {"v", &State::v}, {"u", &State::u}};
   };
 
@@ -56,6 +61,7 @@ class MeanCurvatureFlow {
 
   /// What tangential motion keeps from step to step, for checkpoints; null without.
   nlohmann::json progress() const { return deformation_ ? deformation_->progress() : nullptr; }
+  /// Restores what progress() of an earlier run has returned.
   void resume(const nlohmann::json& saved) {
     if (deformation_) deformation_->resume(saved);
   }
@@ -86,8 +92,8 @@ class MeanCurvatureFlow {
 /// The state with given positions, normals (N x 3) and mean curvatures (N x 1), and v = -H nu in the nodes.
 MeanCurvatureFlow::State mean_curvature_state(double t, Field x, const Field& nu, const Field& H);
 
-/// The state whose nodal values are the normals and mean curvatures of a surface that its nodes x lie on; t =
-/// 0.
+/// The state whose nodal values are the normals and mean curvatures of a surface that its nodes x lie on;
+/// t = 0.
 MeanCurvatureFlow::State mean_curvature_state_on(const Surface& surface, const Field& x);
 
 /// A state for a surface of which only the nodes x are known; t = 0. nu is the L2 projection of the normals

@@ -26,8 +26,10 @@ template <int inputs>
 
 /// The loads g (columns 0-2) and f (columns 3-6) of §3.3.
 struct MeanCurvatureLoads {
-  double alpha, mass_factor;
+  double alpha;        ///< of the stabilising term, 1/time
+  double mass_factor;  ///< 1/L², L of K = M/L² + A
 
+  /// The integrand, with the inputs nu and V.
   void operator()(const PointData<4>& p, Integrand<7, 3>& load) const {
     const Pack V = p.u[3];
     for (int l = 0; l < 3; ++l) {
@@ -44,9 +46,10 @@ struct MeanCurvatureLoads {
 /// mean curvature flow.
 template <class Weight>
 struct MovingCurvatureLoad {
-  double alpha;
-  Weight weight;
+  double alpha;   ///< of the stabilising term, 1/time
+  Weight weight;  ///< (const Pack& V) -> w
 
+  /// The integrand.
   void operator()(const PointData<7>& p, Integrand<4, 0>& load) const {
     set_curvature_load(p, alpha, load.value);
     const auto w = weight(p.u[3]);
@@ -55,7 +58,11 @@ struct MovingCurvatureLoad {
   }
 };
 
+/// @cond
+
 template <class Weight>
 MovingCurvatureLoad(double alpha, Weight weight) -> MovingCurvatureLoad<Weight>;
+
+/// @endcond
 
 }  // namespace esfem

@@ -15,6 +15,7 @@ namespace esfem {
 /// decreases, and doubled after each step.
 class PhaseSeparation {
  public:
+  /// The type of the states.
   using State = CahnHilliardState;
 
   /// x: nodes at rest. The space must outlive the flow. Throws InputError unless epsilon > 0.
@@ -29,8 +30,9 @@ class PhaseSeparation {
   /// The number of steps that have been replaced.
   int replaced_steps() const { return replaced_steps_; }
 
-  /// For checkpoints.
+  /// For checkpoints: replaced_steps().
   nlohmann::json progress() const { return replaced_steps_; }
+  /// Restores what progress() of an earlier run has returned.
   void resume(const nlohmann::json& saved) { replaced_steps_ = saved.get<int>(); }
 
  private:

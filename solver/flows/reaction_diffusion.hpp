@@ -9,12 +9,15 @@
 
 namespace esfem {
 
+/// What a step starts from and computes.
 struct ReactionDiffusionState {
-  double t = 0;
-  Field x;   ///< N x 3
-  Field v;   ///< N x 3: velocity of the nodes
-  Field u;   ///< N x m
-  Field Mu;  ///< N x m: M(x) u, so that no old matrix is needed
+  double t = 0;  ///< time of the nodal values
+  Field x;       ///< N x 3
+  Field v;       ///< N x 3: velocity of the nodes
+  Field u;       ///< N x m
+  Field Mu;      ///< N x m: M(x) u, so that no old matrix is needed
+
+  /// Names of the fields, for checkpoints and messages (History).
   static constexpr NamedField<ReactionDiffusionState> fields[] = {{"x", &ReactionDiffusionState::x},
                                                                   {"v", &ReactionDiffusionState::v},
                                                                   {"u", &ReactionDiffusionState::u},
@@ -27,6 +30,7 @@ struct ReactionDiffusionState {
 ///   (delta_0/tau M(t_n) + D_l A(t_n)) u_l^n = f_l(u~) - 1/tau sum_{j>=1} delta_j M(t_{n-j}) u_l^{n-j}.
 class ReactionDiffusion {
  public:
+  /// The type of the states.
   using State = ReactionDiffusionState;
 
   /// x: positions of the nodes at a time; v: their velocities, none: at rest. The space must outlive the

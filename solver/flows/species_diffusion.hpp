@@ -15,6 +15,7 @@ class SpeciesDiffusion {
   /// One coefficient for each species. Throws InputError when one is negative; 0: the species reacts only.
   explicit SpeciesDiffusion(const std::vector<double>& diffusion);
 
+  /// How many there are.
   int species() const { return species_; }
   /// Replaces b (N x species) by u.
   void solve(SpdSolver& spd, double a, const SymmetricMatrix& M, const SymmetricMatrix& A, Field& b);

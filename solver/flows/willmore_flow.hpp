@@ -28,19 +28,23 @@ namespace esfem {
 /// alone, and Newton's method finds the mu with which area and volume are the prescribed ones.
 class WillmoreFlow {
  public:
+  /// What of the flow is a choice; the default is Willmore flow without constraints.
   struct Variant {
-    WillmoreLaw law = willmore_law();
-    AreaAndVolume prescribed = {};
+    WillmoreLaw law = willmore_law();  ///< Q without the multipliers' part
+    AreaAndVolume prescribed = {};     ///< empty: neither
+
     /// How F(x, u) w of (3.5a) is taken: extrapolated, F(x~, u~) w~; implicit, F(x~, u~) w^n, which on the
     /// Clifford torus is unstable for step sizes from 0.02 to 0.1.
-    enum Coupling { extrapolated, implicit } F = extrapolated;
+    enum Coupling { extrapolated, implicit } F = extrapolated;  ///< how F w is taken
+
     /// nu_h to unit length and z_h to the plane normal to it, in the nodes. after_steps is the paper's way
     /// (§7.1), which loses the order in time: the implicit terms are those of the nu_h that was solved for,
     /// and the larger part of what the projection takes away comes back in each step, whatever its size. With
     /// in_coefficients only nu~ and z~ are projected, of which f, g and F are made; nu_h and z_h stay what
     /// the scheme gives, and all orders are kept. On a sphere of radius R, |nu_h| - 1 grows like exp(8t/R⁴)
     /// with none, and decays like exp(-4t/R⁴) with in_coefficients.
-    enum Projection { none, in_coefficients, after_steps } projection = after_steps;
+    enum Projection { none, in_coefficients, after_steps } projection = after_steps;  ///< of nu and z
+
     /// lambda >= 0: adds lambda int (n - nu_h) . phi to the equation of nu, n the normal of Gamma_h, and
     /// lambda int (div nu_h - H_h) phi + nu_h . grad phi to that of H. Not in the paper; zero for the exact
     /// solution. It prevents nu_h and H_h from drifting away from the surface. Unit 1/time. Explicit: lambda
@@ -55,13 +59,16 @@ class WillmoreFlow {
     MeanCurvatureFlow::Variant::Tangential tangential = MeanCurvatureFlow::Variant::none;
   };
 
+  /// What a step starts from and computes.
   struct State {
-    double t = 0;
+    double t = 0;                      ///< time of the nodal values
     Field x;                           ///< N x 3
     Field v;                           ///< N x 3
     Field u;                           ///< N x 4: H, nu_1, nu_2, nu_3
     Field w;                           ///< N x 4: V, z_1, z_2, z_3
     Field lambda = Field::Zero(1, 2);  ///< multipliers of area and volume; 0 for what is not prescribed
+
+    /// Names of the fields, for checkpoints and messages (History).
     static constexpr NamedField<State> fields[] = {
         {"x", &State::x}, {"v", &State::v}, {"u", &State::u}, {"w", &State::w}, {"lambda", &State::lambda}};
   };
@@ -88,6 +95,7 @@ class WillmoreFlow {
   /// What the flow keeps from step to step, for checkpoints: resume(progress()) makes another flow continue
   /// with the same bits.
   nlohmann::json progress() const;
+  /// Restores what progress() of an earlier run has returned.
   void resume(const nlohmann::json& saved);
 
  private:

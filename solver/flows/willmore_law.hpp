@@ -9,8 +9,11 @@ namespace esfem {
 
 /// What the terms of kll21 (3.5) are made of in a point of the surface, with u = (H, nu).
 struct WillmorePoint {
-  double t;
-  Pack x[3], H, nu[3], grad_H[3];
+  double t;          ///< time
+  Pack x[3];         ///< position on Gamma_h
+  Pack H;            ///< H_h
+  Pack nu[3];        ///< nu_h, of length 1 only up to errors
+  Pack grad_H[3];    ///< tangential gradient of H_h
   Pack A[3][3];      ///< A_h, the symmetric part of grad nu_h
   Pack A_squared;    ///< |A_h|², Frobenius
   Pack A_grad_H[3];  ///< A_h grad H_h

@@ -28,6 +28,7 @@ WillmorePoint willmore_point(const PointData<inputs>& p, double t = 0) {
   return at;
 }
 
+/// The same with Q of a law.
 template <int inputs>
 WillmorePoint willmore_point(const PointData<inputs>& p, const WillmoreLaw& law, double t = 0) {
   WillmorePoint at = willmore_point(p, t);

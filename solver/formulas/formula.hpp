@@ -20,9 +20,9 @@ std::string formula_functions();
 /// The names that formulas use: variables, in the order in which their values will be given, constants, and
 /// parts of formulas that are formulas themselves.
 struct FormulaNames {
-  std::vector<std::string> variables;
-  std::map<std::string, double> constants = {};
-  std::map<std::string, std::string> definitions = {};
+  std::vector<std::string> variables;                   ///< in the order of their values
+  std::map<std::string, double> constants = {};         ///< finite; pi is always known
+  std::map<std::string, std::string> definitions = {};  ///< name -> text of a formula
 };
 
 /// A real function of variables, read from text such as "a - u + u^2*v". Operators + - * / ^, where a^b^c
@@ -42,11 +42,14 @@ class Formula {
   /// Whether a variable occurs in it, or in one of its definitions.
   bool depends_on(const std::string& variable) const;
 
+  /// As it was read; that of a derivative is "d(TEXT)/dVARIABLE".
   const std::string& text() const { return text_; }
   /// For messages: what the formula is, and its text.
   std::string description() const { return where_ + ": \"" + text_ + "\""; }
+  /// The names that it was read with, also those that do not occur in it.
   const FormulaNames& names() const;
 
+  /// In characters, for the formula and for each definition.
   static constexpr int longest_text = 2000;
 
  private:
@@ -58,8 +61,10 @@ class Formula {
 
 /// What is done with the numbers in slots a and b.
 struct FormulaOperation {
-  enum Code { add, subtract, multiply, divide, negate, square_root, function } code;
-  int a, b;
+  /// The operations of arithmetic, and calls of functions.
+  enum Code { add, subtract, multiply, divide, negate, square_root, function } code;  ///< which one
+  int a;                          ///< slot of the operand or of the first one
+  int b;                          ///< slot of the second operand; of no meaning where there is one
   const FormulaFunction* called;  ///< by `function`
 };
 
@@ -68,15 +73,18 @@ struct FormulaOperation {
 /// in each process. The work space is a member: one object is used by one thread at a time.
 class CompiledFormulas {
  public:
+  /// No formulas.
   CompiledFormulas() = default;
   /// Throws InputError when the formulas have different names.
   explicit CompiledFormulas(const std::vector<Formula>& formulas);
 
+  /// The number of formulas, and of results.
   int count() const { return static_cast<int>(results_.size()); }
 
   /// The values of all formulas; in: one value for each variable, out: one for each formula. Throws
   /// NumericsError, which names the formula and the values of the variables, where one is not finite.
   void evaluate(const double* in, double* out) const;
+  /// The same for each lane.
   void evaluate(const Pack* in, Pack* out) const;
   /// The same row by row: points has a column for each variable.
   Field operator()(const Field& points) const;

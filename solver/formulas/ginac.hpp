@@ -15,18 +15,19 @@ namespace esfem {
 /// What GiNaC has read, over its symbols for the variables and for every number outside exponents: numbers
 /// stay as they are written, and are computed with in double precision.
 struct FormulaTree {
-  FormulaNames names;
-  GiNaC::ex expression;
-  std::vector<GiNaC::ex> variables;
-  std::vector<std::pair<GiNaC::ex, double>> numbers;
+  FormulaNames names;                                 ///< that the formula was read with
+  GiNaC::ex expression;                               ///< with the definitions put in
+  std::vector<GiNaC::ex> variables;                   ///< symbols, in the order of names.variables
+  std::vector<std::pair<GiNaC::ex, double>> numbers;  ///< symbols and what they stand for
 };
 
 /// A function of one argument or of two, or diff.
 struct FormulaFunction {
-  std::string name, of_ginac;  ///< in formulas, and for GiNaC, whose abs, sign and step are complex
-  double (*of_one)(double);
-  double (*of_two)(double, double);
-  enum { neither, odd, even } parity = neither;
+  std::string name;                              ///< in formulas
+  std::string of_ginac;                          ///< for GiNaC, whose abs, sign and step are complex
+  double (*of_one)(double);                      ///< its value; nullptr unless it has one argument
+  double (*of_two)(double, double);              ///< its value; nullptr unless it has two
+  enum { neither, odd, even } parity = neither;  ///< f(-a) = -f(a) or f(a): signs are taken out of it
 };
 
 /// nullptr: there is no such function.
@@ -34,6 +35,7 @@ const FormulaFunction* formula_function(const std::string& name);
 /// That of GiNaC. Throws InputError for one that formulas do not have.
 const FormulaFunction& formula_function(const GiNaC::function& function);
 
+/// Of all functions that formulas have, diff included.
 std::vector<std::string> formula_function_names();
 
 /// The functions of formulas for GiNaC's parser.

@@ -39,8 +39,11 @@ class DiscreteCurvature {
   /// For nodes that move with v (N x 3): the rate at which the area changes, int grad x : grad v, and what it
   /// would be if kappa were H nu, int H nu . v; `scale` is ||H nu|| ||v||, which bounds the second.
   struct AreaRates {
-    double of_surface, of_fields, scale;
+    double of_surface;  ///< int grad x : grad v
+    double of_fields;   ///< int H nu . v
+    double scale;       ///< ||H nu|| ||v|| in L2
   };
+  /// Computes them with a flow's own nu and H on the surface of the last compute().
   AreaRates area_rates(const Field& nu, const Field& H, const Field& v) const;
 
  private:

@@ -23,7 +23,9 @@ Velocity normal_velocity(std::function<void(const Vec3& x, double t, double& d_t
 class MovingNodes {
  public:
   /// How many of the newest positions are kept: all of them serve all runs on one mesh.
+  /// @{
   static constexpr int newest_few = 8, all = -1;
+  /// @}
 
   /// Throws InputError unless tau is positive.
   MovingNodes(Velocity velocity, Field x0, double tau, int kept = newest_few);

@@ -10,8 +10,8 @@ namespace esfem {
 
 /// Value and tangential gradient of a function in a point of a surface.
 struct ValueAndGradient {
-  double value;
-  Vec3 gradient;
+  double value;   ///< u(y)
+  Vec3 gradient;  ///< grad_Gamma u(y)
 };
 
 /// The generalised Ritz map of bk22 (5.4): u_h with, for all phi_h in S_h[x],

@@ -21,6 +21,7 @@ namespace esfem {
 /// Math. Comp. 67, 1998). Symbolic phase once, numbers per call.
 class BlockSolver {
  public:
+  /// The symbolic phase for M and A on this pattern. Throws NumericsError when METIS fails.
   explicit BlockSolver(std::shared_ptr<const SparsityPattern> pattern);
   ~BlockSolver();
   BlockSolver(const BlockSolver&) = delete;

@@ -15,10 +15,12 @@ constexpr int block_columns = pack_size < 4 ? 4 : pack_size;
 
 /// A tile of a product, tile_packs * pack_size rows by tile_columns columns, is summed up in registers: 24 of
 /// the 32 that AVX-512 has, 12 of 16 with AVX.
+/// @{
 template <class T>
 constexpr int tile_packs = PackedMatrix<T>::planes == 1 ? 3 : 2;
 template <class T>
 constexpr int tile_columns = PackedMatrix<T>::planes == 1 || pack_size == 2 ? pack_size : pack_size / 2;
+/// @}
 
 /// Columns of L whose product is subtracted from the rest of a front at once: they fit into the cache.
 constexpr int panel_columns = 64;
@@ -27,14 +29,15 @@ constexpr int panel_columns = 64;
 /// by column, one Pack of real parts and, with complex numbers, one of imaginary parts.
 template <class T>
 struct ScaledRows {
-  static constexpr int planes = PackedMatrix<T>::planes;
-  double* data;
+  static constexpr int planes = PackedMatrix<T>::planes;  ///< doubles of a number T: 1, or 2 of a complex one
+  double* data;                                           ///< not owned; as many doubles as `size` says
 
   /// Where the row begins in the column of the panel.
   double* at(int row, int column) const {
     return data + (std::ptrdiff_t{row / pack_size} * panel_columns + column) * planes * pack_size +
            row % pack_size;
   }
+  /// How many doubles so many rows, a multiple of pack_size, take up.
   static constexpr std::ptrdiff_t size(int rows) { return std::ptrdiff_t{rows} * panel_columns * planes; }
 };
 
@@ -63,6 +66,8 @@ void subtract_tile(From from, const double* a, int a_stride, const double* b, in
     }
 }
 
+/// @cond
+
 /// subtract_tile for all sizes, entry (packs - 1) * tile_columns + columns - 1.
 template <class T>
 using Tile = void (*)(From, const double*, int, const double*, int, double*, int);
@@ -72,6 +77,8 @@ constexpr std::array<Tile<T>, sizeof...(k)> tiles(std::integer_sequence<int, k..
 }
 template <class T>
 constexpr auto tile_of_size = tiles<T>(std::make_integer_sequence<int, tile_packs<T> * tile_columns<T>>());
+
+/// @endcond
 
 /// Subtracts L D L^T of the columns p_begin .. p_end of a front from its columns begin .. end, from their
 /// diagonal down. All of these are in L, or all of them in U. scaled: from p_begin on.
@@ -128,6 +135,9 @@ void solve_block_rows(const T (&block)[block_columns][block_columns], const T* i
   }
 }
 
+/// @cond
+
+/// solve_block_rows for all sizes, entry size - 1.
 template <class T>
 using BlockRows = void (*)(const T (&)[block_columns][block_columns], const T*, double*, int, int, double*);
 template <class T, int... k>
@@ -136,6 +146,8 @@ constexpr std::array<BlockRows<T>, sizeof...(k)> block_rows(std::integer_sequenc
 }
 template <class T>
 constexpr auto block_rows_of_size = block_rows<T>(std::make_integer_sequence<int, block_columns>());
+
+/// @endcond
 
 /// Eliminates the columns begin .. begin + size of a front, to which everything before has been applied, and
 /// leaves zeros above their diagonal. They are the columns from `place` on of the panel. Returns the first

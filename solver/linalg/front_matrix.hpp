@@ -10,8 +10,10 @@ namespace esfem {
 /// matrix, whose rows n .. m are numbered as in the front and whose columns from 0.
 template <class T>
 struct FrontMatrix {
-  int n, m;
-  PackedMatrix<T> L, U;
+  int n;              ///< columns that are eliminated
+  int m;              ///< rows of the front, n <= m
+  PackedMatrix<T> L;  ///< m x n
+  PackedMatrix<T> U;  ///< (m - n) x (m - n)
 };
 
 }  // namespace esfem

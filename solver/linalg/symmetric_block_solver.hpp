@@ -17,6 +17,7 @@ namespace esfem {
 /// or GMRES where that is slow, compensates for this and for the growth of round-off.
 class SymmetricBlockSolver {
  public:
+  /// The symbolic phase for P, Q and R on this pattern. Throws NumericsError when METIS fails.
   explicit SymmetricBlockSolver(std::shared_ptr<const SparsityPattern> pattern);
 
   /// The matrices are needed until the last solve. Throws InputError when a matrix is on another pattern,

@@ -46,7 +46,9 @@ class Bytes {
     position_ += bytes;
   }
 
+  /// Where the next number begins, in bytes from the beginning of the content.
   std::size_t position() const { return position_; }
+  /// The number of bytes from there to the end.
   std::size_t left() const { return content_.size() - position_; }
 
   /// Throws InputError: file, byte, message.

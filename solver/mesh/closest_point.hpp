@@ -9,9 +9,10 @@ namespace esfem {
 
 /// A point of a discrete surface: reference coordinates in an element, and where it is.
 struct ElementPoint {
-  int element;
-  double xi, eta;
-  Vec3 y;
+  int element;  ///< 0-based
+  double xi;    ///< in the reference triangle, as eta
+  double eta;   ///< in the reference triangle
+  Vec3 y;       ///< the point, X(xi, eta) of the element
 };
 
 /// The closest points of a discrete surface of any degree, for points near it.
@@ -24,6 +25,7 @@ class ClosestPoint {
   /// The mesh must outlive the object.
   explicit ClosestPoint(const Mesh& mesh);
   ~ClosestPoint();
+  /// The point of the surface that is closest to x.
   ElementPoint operator()(const Vec3& x) const;
 
  private:

@@ -26,8 +26,10 @@ class SmoothSurface {
   /// oscillate (further away than a quarter of the longest edge), it is the flat point itself, and is_wild is
   /// set.
   Vec3 point(int element, const Vec3& weights, bool& is_wild) const;
+  /// The same without is_wild.
   Vec3 point(int element, const Vec3& weights) const;
 
+  /// The sharp edges and sectors of `flat`.
   const Features& features() const { return features_; }
 
  private:
@@ -59,10 +61,11 @@ class SmoothSurface {
   std::vector<Height> heights_;  ///< one a sector
 };
 
+/// What curved_mesh makes of a flat triangulation.
 struct CurvedMesh {
-  Mesh mesh;        ///< of degree k; corners where they were
-  int sharp_edges;  ///< edges whose triangles enclose more than the feature angle
-  int edges;
+  Mesh mesh;         ///< of degree k; corners where they were
+  int sharp_edges;   ///< edges whose triangles enclose more than the feature angle
+  int edges;         ///< all of them, sharp or not
   int straight = 0;  ///< nodes left on the flat triangles: the surface is too rough, or folds there
 };
 

@@ -14,11 +14,12 @@ constexpr double default_feature_angle = 40;
 struct Features {
   std::vector<int> twin;    ///< the other side of each side
   std::vector<bool> sharp;  ///< whether the normals on both sides differ by more than the angle
+
   /// The sector of its first corner that a side belongs to, a number from 0 on: triangles around a corner are
   /// in one sector when they are neighbours across edges that are not sharp.
   std::vector<int> sector;
-  int sectors = 0;  ///< how many there are, at least one a corner
-  int sharp_edges = 0;
+  int sectors = 0;      ///< how many there are, at least one a corner
+  int sharp_edges = 0;  ///< of two sharp sides each
 
   /// The sharp side that continues a sharp one at its end, if exactly two sharp edges meet there and turn by
   /// no more than the angle. -1: none, the feature ends or has a corner there.

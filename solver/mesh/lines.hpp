@@ -37,6 +37,7 @@ class Lines {
   int number() const { return number_; }
   /// The number of its words.
   int size() const { return int(words_.size()); }
+  /// Word i (from 0), which must be there.
   std::string word(int i) const { return std::string(words_[i]); }
   /// Whether word i is there and is this one; letters are compared without case.
   bool is(int i, std::string_view lower_case) const;

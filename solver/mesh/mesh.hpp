@@ -44,9 +44,10 @@ struct MeshQuality {
   double h_min;              ///< smallest edge length
   double min_angle;          ///< smallest angle, degrees
   double mean_radius_ratio;  ///< mean of 2 (inradius)/(circumradius), 1 for equilateral triangles
-  double min_radius_ratio;
-  int worst_element;  ///< the element with the smallest radius ratio (0-based)
+  double min_radius_ratio;   ///< smallest of these, 0 of a degenerate triangle
+  int worst_element;         ///< the element with the smallest radius ratio (0-based)
 };
+/// Measures it. elements: of any degree, of which the corners count.
 MeshQuality mesh_quality(const Connectivity& elements, const Field& x);
 
 /// Vertices - edges + triangles of the corner triangulation.

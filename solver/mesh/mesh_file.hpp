@@ -16,8 +16,8 @@ void number_by_position(std::vector<long>& tags, long n);
 
 /// A mesh as its file has it, before any check of the surface; elements name nodes that exist.
 struct MeshFile {
-  Mesh mesh;
-  MeshOrigin origin;
+  Mesh mesh;                              ///< not checked, not oriented yet
+  MeshOrigin origin;                      ///< names its nodes and elements
   std::vector<std::string> remarks = {};  ///< what the reader changed
   NodalFields fields = {};                ///< nodal values that the file has; nan where it has none
   std::optional<double> t = {};           ///< the time, where the file says it
@@ -32,10 +32,12 @@ MeshFile parse_vtu(const std::string& file, const std::string& content);
 /// Read the content of a file: OFF of Geomview (ASCII and binary), Wavefront OBJ, PLY (ASCII and binary), STL
 /// (ASCII and binary). Polygons are cut into triangles. Throw InputError that names the file, and the line,
 /// byte or element.
+/// @{
 MeshFile parse_off(const std::string& file, const std::string& content);
 MeshFile parse_obj(const std::string& file, const std::string& content);
 MeshFile parse_ply(const std::string& file, const std::string& content);
 MeshFile parse_stl(const std::string& file, const std::string& content);
+/// @}
 
 /// `repair`, then `check_closed_surface`; returns all remarks in one line. What was changed before an error
 /// is said there, too.

@@ -11,11 +11,12 @@ namespace esfem {
 
 /// An element type of Gmsh: https://gmsh.info/doc/texinfo/gmsh.html#MSH-file-format.
 struct MshElementType {
-  int number;  ///< in the file
-  int dimension;
-  int nodes;
+  int number;        ///< in the file
+  int dimension;     ///< 0 of points to 3 of volumes
+  int nodes;         ///< of an element
   int order;         ///< of the element map; 0 where these elements are not read
   const char* name;  ///< "10-node triangle"
+
   /// Of volume elements that are read: the nodes of each face, outward, corners first.
   std::vector<std::vector<int>> faces = {};
 
@@ -28,31 +29,31 @@ const MshElementType* msh_element_type(long number);
 
 /// An element of the file; points and lines are not kept.
 struct MshElement {
-  const MshElementType* type;
-  long tag;
-  int line;           ///< 0 in a binary file
-  std::size_t first;  ///< of its nodes in Msh::element_nodes
-  long group = 0;     ///< physical group, in MSH 2
+  const MshElementType* type;  ///< of the table; not nullptr
+  long tag;                    ///< its number in the file
+  int line;                    ///< 0 in a binary file
+  std::size_t first;           ///< of its nodes in Msh::element_nodes
+  long group = 0;              ///< physical group, in MSH 2
 };
 
 /// Values at nodes: a section $NodeData.
 struct MshNodeData {
-  std::string name;
-  int components;
+  std::string name;            ///< the first string of the section
+  int components;              ///< values a node: 1, 3 or 9
   std::vector<long> nodes;     ///< tags
   std::vector<double> values;  ///< node by node
 };
 
 /// What an MSH file says, nodes and elements by the file's own numbers (tags).
 struct Msh {
-  std::string file;
-  std::vector<double> coordinates;  ///< three a node
-  std::vector<long> node_tags;
-  std::vector<int> node_lines;  ///< empty in a binary file
-  std::unordered_map<long, int> node_of_tag;
-  std::vector<MshElement> elements;
-  std::vector<long> element_nodes;
-  std::vector<MshNodeData> node_data;
+  std::string file;                           ///< its name, for errors
+  std::vector<double> coordinates;            ///< three a node
+  std::vector<long> node_tags;                ///< in the order of the coordinates
+  std::vector<int> node_lines;                ///< empty in a binary file
+  std::unordered_map<long, int> node_of_tag;  ///< tag -> place in node_tags
+  std::vector<MshElement> elements;           ///< of surfaces and volumes
+  std::vector<long> element_nodes;            ///< tags of their nodes, element by element
+  std::vector<MshNodeData> node_data;         ///< in the order of the file
 };
 
 /// The surface of an MSH file: its triangles, 4-node quadrangles cut into two. Where the file has volume

@@ -25,6 +25,7 @@ class MshRecords {
     binary_ = true;
     swapped_ = swapped;
   }
+  /// Whether records are binary.
   bool is_binary() const { return binary_; }
 
   /// The records start behind the current line.
@@ -51,6 +52,7 @@ class MshRecords {
   }
 
   /// The next number of the record, an int, a size_t or a double in a binary file; `what` it is, for errors.
+  /// @{
   long integer(const char* what) {
     return bytes_ ? bytes_->take<std::int32_t>(what) : lines.integer(word_++, what);
   }
@@ -58,10 +60,13 @@ class MshRecords {
     return bytes_ ? bytes_->take<std::int64_t>(what) : lines.integer(word_++, what);
   }
   double real(const char* what) { return bytes_ ? bytes_->take<double>(what) : lines.real(word_++, what); }
+  /// @}
 
   /// The same, at least 0.
+  /// @{
   long integer_count(const char* what) { return not_negative(integer(what), what); }
   long size_count(const char* what) { return not_negative(size(what), what); }
+  /// @}
 
   /// The same, finite.
   double coordinate() {

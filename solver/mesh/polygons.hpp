@@ -9,7 +9,7 @@ namespace esfem {
 
 /// What OFF, OBJ, PLY and STL files hold: points and polygons between them.
 struct Polygons {
-  std::vector<Vec3> points;
+  std::vector<Vec3> points;   ///< in the order of the file
   std::vector<long> corners;  ///< of all polygons, one after the other: the file's numbers of its points
   std::vector<int> sizes;     ///< how many corners each polygon has
   long first = 0;             ///< the file's number of its first point

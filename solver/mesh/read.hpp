@@ -11,6 +11,7 @@
 
 namespace esfem {
 
+/// What read_mesh finds in a file.
 struct ReadMesh {
   Mesh mesh;                       ///< of the degree of the file's elements; the file's node order
   std::string remark;              ///< empty, or what was changed ("orientation was inward: turned")

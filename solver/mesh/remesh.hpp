@@ -7,15 +7,17 @@ namespace esfem {
 
 /// A point of a mesh of degree 1.
 struct MeshPoint {
-  int element;
+  int element;   ///< 0-based
   Vec3 weights;  ///< barycentric coordinates; exactly 0 on an edge
 };
 
+/// What `remesh` makes of a mesh.
 struct RemeshedSurface {
-  Mesh mesh;
+  Mesh mesh;                        ///< of degree 1
   std::vector<MeshPoint> on_input;  ///< where on the given mesh each node lies
-  int sharp_edges, kept;            ///< of the given mesh
-  double relative_volume_change;
+  int sharp_edges;                  ///< how many the given mesh has
+  int kept;                         ///< how many of these the new edges follow
+  double relative_volume_change;    ///< new volume/old volume - 1
 };
 
 /// A closed mesh of degree 1 remeshed with edges of about `edge_length` and triangles close to equilateral,

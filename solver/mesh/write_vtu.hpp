@@ -17,9 +17,9 @@ struct RunLabel {
 
 /// What a snapshot contains in addition to its surface.
 struct SnapshotLabel {
-  int step = 0;
-  double t = 0;
-  RunLabel run = {};
+  int step = 0;       ///< of the run, from 0
+  double t = 0;       ///< time of the surface
+  RunLabel run = {};  ///< the run that it belongs to
 };
 
 /// Writes a surface of degree 1..4 with nodal fields as a binary VTU file that ParaView opens: triangles (VTK

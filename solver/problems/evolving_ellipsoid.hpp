@@ -11,10 +11,15 @@ namespace esfem {
 /// bk22 (9.2): {x1²/a(t) + x2² + x3² = radius²}, a(t) = 1 + amplitude sin(2 pi t/period), which moves by v =
 /// V nu.
 struct EvolvingEllipsoid {
-  double amplitude = 0.25, period = 1, radius = 1;
+  double amplitude = 0.25;  ///< below 1 in size, so that a > 0
+  double period = 1;        ///< in time
+  double radius = 1;        ///< of the sphere at t = 0
 
+  /// The square of the half axis along x1, over that of the others.
   double a(double t) const;
+  /// Its derivative.
   double a_t(double t) const;
+  /// The surface at time t.
   Surface surface(double t) const;
   /// v = V nu, by which the material points move.
   Velocity velocity() const;
@@ -28,24 +33,35 @@ struct EvolvingEllipsoid {
 /// differentiation.
 class ManufacturedCahnHilliard {
  public:
+  /// epsilon: that of the flow, positive.
   ManufacturedCahnHilliard(EvolvingEllipsoid ellipsoid, double epsilon)
       : ellipsoid_(ellipsoid), epsilon_(epsilon) {}
 
   /// In a point of the surface at time t.
+  /// @{
   double u(const Vec3& x, double t) const;
   double w(const Vec3& x, double t) const;
   double b(const Vec3& x, double t) const;
+  /// @}
+
   /// Tangential gradients.
+  /// @{
   Vec3 gradient_of_u(const Vec3& x, double t) const;
   Vec3 gradient_of_w(const Vec3& x, double t) const;
+  /// @}
 
   /// The Problem of CahnHilliard: b is interpolated in the nodes.
   struct Problem : DoubleWell {
-    const ManufacturedCahnHilliard* exact;
+    const ManufacturedCahnHilliard* exact;  ///< must outlive the flow
+
+    /// b in the nodes x, N x 1.
     void b(double t, const Field& x, Field& nodal) const;
   };
+  /// The surface.
   const EvolvingEllipsoid& ellipsoid() const { return ellipsoid_; }
+  /// Of the flow that it solves.
   double epsilon() const { return epsilon_; }
+  /// The Problem that it solves; this object must outlive it.
   Problem problem() const {
     Problem problem;
     problem.exact = this;
@@ -62,6 +78,7 @@ ExactEvolution exact_evolution(const ManufacturedCahnHilliard& exact, MovingNode
 
 /// The starting values of bk22 §9: nodal interpolation of u and w, or their Ritz maps (5.4).
 enum class StartValues { interpolation, ritz };
+/// The state with these values of u and w on nodes x at time t, and Mu.
 CahnHilliardState exact_cahn_hilliard_state(const SurfaceSpace& space, const ManufacturedCahnHilliard& exact,
                                             Field x, double t, StartValues values);
 

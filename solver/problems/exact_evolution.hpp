@@ -15,9 +15,10 @@ namespace esfem {
 /// Values and tangential gradients of components in pack_size points of a surface: gradient[l][i] is the i-th
 /// coordinate of that of component l.
 struct FieldsAtPoints {
-  std::vector<Pack> value;
-  std::vector<std::array<Pack, 3>> gradient;
+  std::vector<Pack> value;                    ///< one a component
+  std::vector<std::array<Pack, 3>> gradient;  ///< one a component
 
+  /// Of so many components, with values that are not set.
   explicit FieldsAtPoints(int components) : value(components), gradient(components) {}
 };
 
@@ -26,18 +27,20 @@ struct FieldsAtPoints {
 struct ExactEvolution {
   /// A quantity of the error tables and its number of components.
   struct Quantity {
-    std::string name;
-    int components;
+    std::string name;  ///< "x", "nu": of a nodal field of the flow
+    int components;    ///< 1 of a scalar, 3 of a vector
   };
-  std::vector<Quantity> quantities;  ///< in the order of the columns of `values`
-  std::function<Surface(double t)> surface;
+  std::vector<Quantity> quantities;          ///< in the order of the columns of `nodal_values`
+  std::function<Surface(double t)> surface;  ///< at time t
+
   /// Positions at time t of the points that start at x0 (N x 3).
   std::function<Field(const Field& x0, double t)> trajectories;
   /// In points of the surface at time t: the components, all quantities side by side.
   std::function<void(double t, const SurfacePoints& at, FieldsAtPoints& out)> fields;
 
+  /// Of all quantities together: the number of columns of `nodal_values`.
   int components() const;
-  /// The first column of a quantity.
+  /// The first column of a quantity. Throws InputError when there is none of this name.
   int column(const std::string& quantity) const;
   /// Values of all components in points x of the surface at time t: N x components.
   Field nodal_values(const Field& x, double t) const;

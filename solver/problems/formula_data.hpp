@@ -42,17 +42,21 @@ class FormulaMixture {
   /// potential: a formula in x, y, z, t, u. source: none where it is empty.
   FormulaMixture(const Formula& potential, const std::vector<Formula>& source);
 
+  /// f = 0.
   Pack f(double, const PointData<1>&) const { return Pack{}; }
+  /// g = F'(u). Throws NumericsError where it is not finite; so do dg and b.
   Pack g(double t, const PointData<1>& p) const {
     Pack result;
     evaluate(slope_, t, p, result);
     return result;
   }
+  /// g' = F''(u).
   Pack dg(double t, const PointData<1>& p) const {
     Pack result;
     evaluate(second_, t, p, result);
     return result;
   }
+  /// The source in the nodes, N x 1; leaves `nodal` as it is where there is none.
   void b(double t, const Field& x, Field& nodal) const;
 
   /// Integral of epsilon/2 |grad u|² + F(u)/epsilon over Gamma_h[x].

@@ -11,7 +11,13 @@ namespace esfem {
 /// The manufactured solution of nick18 §7.3: X(q, t) = r(t) q on the unit sphere, u = a(t) x1 x2 x3, and r,
 /// r', r'', a, a' at one time.
 struct GrowingSphere {
-  double r, dr, ddr, a, da;
+  double r;    ///< radius, 1 + sin(pi t)/2
+  double dr;   ///< r'
+  double ddr;  ///< r''
+  double a;    ///< exp(-t²)
+  double da;   ///< a'
+
+  /// All of them at time t.
   explicit GrowingSphere(double t);
 };
 
@@ -27,11 +33,13 @@ struct GrowingSphere {
 /// by exp int (12 - l(l+1)) D/r² dt = 1372, 412, 37 (D = 1).
 class GrowingSphereProblem {
  public:
+  /// Of a Problem of CoupledDiffusion.
   static constexpr int species = 1;
 
   /// How g depends on u; all have the same exact solution.
   enum Coupling {
     additive,  ///< g = G(t) + (u - a x1 x2 x3)
+
     /// g = u G(t)/(a x1 x2 x3), as §7.3 prints it: 0/0 on three planes. Errors of u are amplified where
     /// quadrature points come near them; on coarse meshes the run becomes unstable.
     quotient,
@@ -42,11 +50,13 @@ class GrowingSphereProblem {
   GrowingSphereProblem(const CoupledDiffusionParameters& parameters, CoupledDiffusionVariant::Law law,
                        Coupling coupling = additive);
 
+  /// f at points where u is p.u: a multiple of u.
   void f(double t, const PointData<1>& p, Pack (&out)[1]) const {
     const GrowingSphere s(t);
     out[0] = (5 * s.dr / s.r + s.da / s.a + 12 * D_ / (s.r * s.r)) * p.u[0];
   }
 
+  /// g, by the coupling.
   Pack g(double t, const PointData<1>& p) const {
     const GrowingSphere s(t);
     const Pack exact_u = s.a * p.x[0] * p.x[1] * p.x[2];

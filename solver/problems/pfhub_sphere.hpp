@@ -11,7 +11,10 @@ namespace esfem {
 /// With u = c and w = M mu this is the equation of LinearisedCahnHilliard for epsilon = M kappa and g =
 /// epsilon M f'.
 struct PfhubSphere {
-  static constexpr double radius = 100, kappa = 2, mobility = 5, epsilon = mobility * kappa;
+  static constexpr double radius = 100;                ///< of the sphere
+  static constexpr double kappa = 2;                   ///< of the gradient energy
+  static constexpr double mobility = 5;                ///< M
+  static constexpr double epsilon = mobility * kappa;  ///< of LinearisedCahnHilliard
 
   /// f for doubles and Packs.
   template <class T>
@@ -23,15 +26,19 @@ struct PfhubSphere {
   static T df(const T& c) {
     return 10.0 * (c - 0.3) * (0.7 - c) * (1.0 - 2.0 * c);
   }
+  /// f''.
   template <class T>
   static T d2f(const T& c) {
     return 10.0 * ((1.0 - 2.0 * c) * (1.0 - 2.0 * c) - 2.0 * (c - 0.3) * (0.7 - c));
   }
 
+  /// The functions of a Problem: g, its derivative with respect to u, f = 0 and no b.
+  /// @{
   Pack g(double, const PointData<1>& p) const { return epsilon * mobility * df(p.u[0]); }
   Pack dg(double, const PointData<1>& p) const { return epsilon * mobility * d2f(p.u[0]); }
   Pack f(double, const PointData<1>&) const { return Pack{}; }
   void b(double, const Field&, Field&) const {}
+  /// @}
 };
 
 /// c at the start in the nodes x, N x 1: three waves in the Cartesian coordinates x1, x2, at most 0.03 high.

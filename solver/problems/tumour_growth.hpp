@@ -13,21 +13,28 @@ namespace esfem {
 /// the flow).
 class TumourGrowth {
  public:
+  /// Of a Problem of CoupledDiffusion: activator and substrate.
   static constexpr int species = 2;
 
+  /// The parameters of f and g, all positive.
   struct Kinetics {
-    double a = 0.1, b = 0.9, gamma = 30, delta = 0.4;  ///< gamma > 0 is the size of the tumour
+    double a = 0.1;      ///< supply of activator
+    double b = 0.9;      ///< supply of substrate
+    double gamma = 30;   ///< the size of the tumour
+    double delta = 0.4;  ///< growth per activator
   };
 
   /// Throws InputError unless all are positive.
   explicit TumourGrowth(const Kinetics& kinetics);
 
+  /// f_1 and f_2.
   void f(double, const PointData<2>& p, Pack (&out)[2]) const {
     const Pack reaction = p.u[0] * p.u[0] * p.u[1];
     out[0] = kinetics_.gamma * (kinetics_.a - p.u[0] + reaction);
     out[1] = kinetics_.gamma * (kinetics_.b - reaction);
   }
 
+  /// delta u_1.
   Pack g(double, const PointData<2>& p) const { return kinetics_.delta * p.u[0]; }
 
   /// The spatially homogeneous steady state: u_1 = a + b, u_2 = b/(a + b)², where f_1 = f_2 = 0. It is

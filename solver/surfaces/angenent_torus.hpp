@@ -12,13 +12,20 @@ namespace esfem {
 /// which starts on the inner equator, a = 0, and is symmetric to z = 0. Accurate to 1e-12.
 class AngenentProfile {
  public:
+  /// Integrates the curve; angenent_profile() does so once.
   AngenentProfile();
 
+  /// A point of the profile; vectors are in the half plane of (r, z).
   struct Point {
-    Eigen::Vector2d position, tangent, normal;  ///< (r, z); the normal points out of the torus
-    double meridian_curvature, parallel_curvature;
+    Eigen::Vector2d position;   ///< (r, z)
+    Eigen::Vector2d tangent;    ///< of length 1, in the direction of increasing s
+    Eigen::Vector2d normal;     ///< of length 1, out of the torus
+    double meridian_curvature;  ///< a', along the profile; H is the sum of both
+    double parallel_curvature;  ///< -cos(a)/r, around the axis
   };
+  /// The point at arclength s from the inner equator; s may be any number, the curve is periodic.
   Point at(double s) const;
+  /// Arclength of the whole profile.
   double length() const { return curve_.period(); }
   /// How far the integrated curve (r, z, a) is from closing.
   double gap() const { return gap_; }
@@ -32,9 +39,8 @@ class AngenentProfile {
   /// Arclength of the closest point to (r, z), by Newton's method from the radial one; NaN where that fails.
   double closest_arclength(double r, double z) const;
 
-  /// The particles of the normal flow slide along the profile by ds/dsigma = <y, tangent>/2 while y =
-  /// x/sqrt(1
-  /// - t), sigma = -log(1 - t): a particle that starts at s is at s + displacement(s).
+  /// The particles of the normal flow slide along the profile by ds/dsigma = <y, tangent>/2, where
+  /// y = x/sqrt(1 - t), sigma = -log(1 - t): a particle that starts at s is at s + displacement(s).
   PeriodicTable<1> displacement(double sigma) const;
 
  private:

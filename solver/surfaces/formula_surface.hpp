@@ -10,7 +10,8 @@ namespace esfem {
 
 /// A box with sides along the axes.
 struct Box {
-  Vec3 low, high;
+  Vec3 low;   ///< corner with the smallest coordinates
+  Vec3 high;  ///< corner with the largest
 };
 
 /// The surface {d = 0} in a box, for a formula d(x, y, z) with d < 0 inside, of constants and definitions.

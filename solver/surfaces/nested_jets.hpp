@@ -8,12 +8,16 @@
 // at any depth. Quotients and square roots are here, too: those of Ceres say T(1.0), which needs a double.
 namespace ceres {
 
+/// Makes constants of a scalar type, at any depth of nesting.
 template <class T>
 struct FromDouble {
+  /// c, with derivatives 0.
   static T make(double c) { return T(c); }
 };
+/// That of nested Jets.
 template <class T, int N>
 struct FromDouble<Jet<T, N>> {
+  /// c, with derivatives 0.
   static Jet<T, N> make(double c) { return Jet<T, N>(FromDouble<T>::make(c)); }
 };
 

@@ -12,6 +12,7 @@ namespace esfem {
 template <int components>
 class PeriodicTable {
  public:
+  /// A column for each point of the grid.
   using Values = Eigen::Matrix<double, components, Eigen::Dynamic>;
 
   /// values: the column j belongs to the argument j period/n, j = 0, ..., n - 1, n >= 8.
@@ -20,8 +21,10 @@ class PeriodicTable {
     for (int j = 0; j < size_ + points; ++j) values_.col(j) = values.col((j - left + size_) % size_);
   }
 
+  /// The length after which the function repeats.
   double period() const { return period_; }
 
+  /// The value at s, which need not be in the first period.
   Eigen::Matrix<double, components, 1> operator()(double s) const {
     const double position = s / period_ - std::floor(s / period_);
     const int cell = std::min(static_cast<int>(position * size_), size_ - 1);

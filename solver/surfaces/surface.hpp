@@ -16,14 +16,16 @@ namespace esfem {
 
 /// Value, gradient and Hessian of a level set function at a point.
 struct LevelSetJet {
-  double value;
-  Vec3 gradient;
-  Mat3 hessian;
+  double value;   ///< of the function itself
+  Vec3 gradient;  ///< in space
+  Mat3 hessian;   ///< in space; symmetric
 };
 
 /// pack_size points of a surface at once, with the normals and Weingarten maps there.
 struct SurfacePoints {
-  Pack y[3], normal[3], weingarten[3][3];
+  Pack y[3];              ///< positions
+  Pack normal[3];         ///< outward, of length 1
+  Pack weingarten[3][3];  ///< as Surface::weingarten
 
   /// Entry of P = I - nu nu^T.
   [[gnu::always_inline]] Pack projection(int i, int j) const {
@@ -38,13 +40,14 @@ inline Vec3 lane_of(const Pack (&x)[3], int lane) {
 
 /// A smooth closed surface {d = 0} with d < 0 inside, so that nu = grad d/|grad d| points outward.
 struct Surface {
-  std::string name;
-  std::map<std::string, double> parameters;
-  std::function<LevelSetJet(const Vec3&)> level_set;
-  std::function<double(const Vec3&)> level;  ///< d alone (cheaper; for the mesher)
-  double bounding_radius;                    ///< the surface lies inside this ball around `centre`
-  double smallest_curvature_radius;          ///< min over the surface of 1/max(|kappa_1|, |kappa_2|)
-  int euler_characteristic;
+  std::string name;                                   ///< "sphere", "torus": which formula it is
+  std::map<std::string, double> parameters;           ///< of its formula, under their names
+  std::function<LevelSetJet(const Vec3&)> level_set;  ///< d with its derivatives, in points of space
+  std::function<double(const Vec3&)> level;           ///< d alone (cheaper; for the mesher)
+  double bounding_radius;                             ///< the surface lies inside this ball around `centre`
+  double smallest_curvature_radius;                   ///< min over the surface of 1/max(|kappa_1|, |kappa_2|)
+  int euler_characteristic;  ///< of all components together; 2 of a sphere, 0 of a torus
+
   /// This surface's own way to the closest point, where there is one (a closed form); otherwise Newton's
   /// method in space finds it.
   std::function<Vec3(const Vec3&)> own_closest_point = {};
@@ -54,7 +57,7 @@ struct Surface {
   /// finite where it fails.
   std::function<SurfacePoints(const Pack (&x)[3])> own_closest_points = {};
   Vec3 centre = Vec3::Zero();  ///< of the bounding ball
-  int components = 1;
+  int components = 1;          ///< how many connected parts it has
 
   /// Outward unit normal of the level set through y. Pointwise; y need not lie on the surface.
   Vec3 normal(const Vec3& y) const;
@@ -70,9 +73,10 @@ struct Surface {
   /// Delta_Gamma H = tr(P Hess H) - H nu . grad H, for any extension of H into space. y must lie on the
   /// surface.
   double mean_curvature_laplacian(const Vec3& y) const;
+  /// What `normal` and `weingarten` are in one point.
   struct Shape {
-    Vec3 normal;
-    Mat3 weingarten;
+    Vec3 normal;      ///< outward, of length 1
+    Mat3 weingarten;  ///< extended: 3 x 3
   };
   /// Normal and Weingarten map from one evaluation of the level set.
   Shape shape_at(const Vec3& y) const;
@@ -87,6 +91,7 @@ struct Surface {
 /// Fills in one lane: the point y of a surface, and its shape there.
 void set_lane(SurfacePoints& points, int lane, const Vec3& y, const Surface::Shape& shape);
 
+/// A number with its gradient in space.
 template <class T>
 using SpaceJet = ceres::Jet<T, 3>;
 

@@ -21,40 +21,51 @@ namespace esfem {
 /// error of every row in range is at most `at_most` (and at least `at_least`). value: the same for a number
 /// in Row::values.
 struct Claim {
-  enum Kind { order, size, value } kind = order;
-  std::string id, statement;
-  std::string family;        ///< the id of the family that it is a member of; "": none
-  std::string paper, place;  ///< source, e.g. "kll19", "§13.1, Fig. 13.1"
+  /// What the claim is about.
+  enum Kind { order, size, value } kind = order;  ///< says which members below apply
+  std::string id;                                 ///< unique in its file
+  std::string statement;                          ///< what is claimed, in a sentence
+  std::string family;                             ///< the id of the family that it is a member of; "": none
+  std::string paper;                              ///< source, e.g. "kll19"
+  std::string place;                              ///< in the paper: "§13.1, Fig. 13.1"
+
   /// What it rests on: "statement" (a sentence or figure of the paper), "theory" (a theorem or an identity),
   /// "independent" (another implementation), "finding" (this project's own), "regression" (the program's own
   /// number, which is to stay what it is).
   std::string basis;
-  std::string quote;           ///< statement: the paper's own words
-  std::string quantity, norm;  ///< keys of Row::errors; value: quantity is a key of Row::values
-  std::string variable;        ///< order: "h" | "tau"
-  double expected = 0;         ///< order
-  double tolerance = 0;        ///< order
+  std::string quote;     ///< statement: the paper's own words
+  std::string quantity;  ///< key of Row::errors; value: of Row::values
+  std::string norm;      ///< key of Row::errors[quantity]; value: empty
+  std::string variable;  ///< order: "h" | "tau"
+  double expected = 0;   ///< order
+  double tolerance = 0;  ///< order
+
   /// order: what it is in this setting, where a method does better than `expected`: the fitted order is to be
   /// within observed_tolerance of it, so that a lost order is seen.
   std::optional<double> observed;
+  /// See `observed`.
   static constexpr double observed_tolerance = 0.5;
   /// size and value: how far the number may be from "observed", relative to it.
   static constexpr double observed_margin = 0.05;
   /// order: the presets at which the runs are known not to tell. It is an error when they can.
   std::set<std::string> cannot_be_told;
-  double at_least = -std::numeric_limits<double>::infinity();
-  double at_most = std::numeric_limits<double>::infinity();
-  RowRange rows;
+  double at_least = -std::numeric_limits<double>::infinity();  ///< size and value
+  double at_most = std::numeric_limits<double>::infinity();    ///< of all kinds
+  RowRange rows;                                               ///< the rows in range
   int from_step = 0;  ///< the maximum over time is over the steps n >= this
+
   /// The rows that have these labels; some labels may be omitted if the selected rows are of one variant.
   nlohmann::json where = nlohmann::json::object();
   std::set<std::string> presets;  ///< where it is checked; empty: everywhere
   std::vector<std::string>
       figures;  ///< of the paper, as it numbers them: beside these the report has the claim
+
   /// The verdict on the paper's statement, if the bounds are this project's finding: "reproduced",
   /// "reproduced, but", "not reproduced" or "corrected", with the reason; empty: it holds as stated when the
   /// claim is met. A remark may stand alone.
+  /// @{
   std::string finding, remark;
+  /// @}
 };
 
 /// Contents of reference/STEM.json: {"experiment", "paper", "claims": [{"id", "statement", "source":
@@ -68,7 +79,8 @@ struct Claim {
 /// those of a claim come first. "runs": {"check": 37, "paper": 176} says how many rows the tables have, so
 /// that a missing one is seen where an order holds without it.
 struct Reference {
-  std::string experiment, paper;
+  std::string experiment;                       ///< the STEM of its files
+  std::string paper;                            ///< its key, "kll19"; "esfem": this project
   std::vector<Claim> claims;                    ///< the members of a family one after the other
   std::map<std::string, std::string> families;  ///< id -> what its members say together
   std::map<std::string, int> runs;              ///< preset -> how many rows its table has
@@ -78,19 +90,22 @@ struct Reference {
 /// without claims.
 Reference reference_from_json(const nlohmann::json& json, const std::string& source);
 
+/// What a table says of a claim.
 struct Verdict {
   /// An order holds when its whole interval is within the bounds, and fails when none of it is; else it
   /// cannot be told, and not either when there is no interval.
-  enum Outcome { holds, cannot_be_told, fails } outcome = fails;
-  std::string reason;     ///< why it does not hold: one sentence
-  bool measured = false;  ///< whether the following are set
-  double value = 0;       ///< the order, or the error that is furthest from being met
+  enum Outcome { holds, cannot_be_told, fails } outcome = fails;  ///< fails unless a check says otherwise
+  std::string reason;                                             ///< why it does not hold: one sentence
+  bool measured = false;                                          ///< whether the following are set
+  double value = 0;  ///< the order, or the error that is furthest from being met
+
   /// Of an order: its 95% interval, or the limit of slopes that rise or fall; none where `remark` says
   /// why.
   std::optional<Interval> interval;
   std::string remark;  ///< what is to be said of an order (fit_orders.hpp)
-  int rows_used = 0;
+  int rows_used = 0;   ///< of the table, when measured
 
+  /// Whether it holds.
   bool met() const { return outcome == holds; }
 };
 

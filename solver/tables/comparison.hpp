@@ -13,6 +13,7 @@ namespace esfem {
 struct Comparison {
   nlohmann::json with;  ///< labels of the rows that the others are compared with: {"flow": "dziuk", "bdf": 3}
   std::string suffix;   ///< of the names of the ratios: "_over_dziuk"
+
   /// Numbers of a row: the name of a value, "distance", or quantity and norm of an error, "x_nodal_L2".
   std::vector<std::string> numbers;
   int level = 0;   ///< -1: with the next coarser mesh

@@ -11,32 +11,45 @@ namespace esfem {
 
 /// Which rows enter a fit (bounds inclusive, with 1e-9 relative slack).
 struct RowRange {
+  /// Bounds of the step size and of the mesh's h.
+  /// @{
   double tau_min = 0, tau_max = 1e300, h_min = 0, h_max = 1e300;
+  /// @}
 };
 
 /// A quantity whose errors are all below this is not fitted.
 constexpr double round_off = 1e-10;
 
+/// Whether tau and h of the row are in the range.
 bool in_range(const Row& row, const RowRange& range);
 
 /// The order in one variable that rows show.
 struct ObservedOrder {
-  double order = 0;
+  double order = 0;              ///< p or q of OrderFit
   std::optional<Interval> ci95;  ///< none where `remark` says why
+
   /// Slopes between neighbouring meshes (or step sizes), coarse to fine, where the term is at least a fifth
   /// of the error; the other term is taken off.
   std::vector<double> slopes;
   /// Where the slopes rise or fall: from the last of them to where they end if they change twice as much as
   /// an error C s^p (1 + c s) does, linearly in s.
   std::optional<Interval> limit;
-  std::string remark;
+  std::string remark;  ///< "" or what the order means: why there is no interval, "no dependence"
 };
 
 /// Observed orders p, q of e = C_h h^p + C_tau tau^q (positive C), from all given rows at once.
 struct OrderFit {
-  std::optional<ObservedOrder> h, tau;      ///< where the rows determine them
-  double constant_h = 0, constant_tau = 0;  ///< 0: the term is not in the model
-  int rows_used = 0;
+  /// p and q, where the rows determine them.
+  /// @{
+  std::optional<ObservedOrder> h, tau;
+  /// @}
+
+  /// C_h and C_tau; 0: the term is not in the model.
+  /// @{
+  double constant_h = 0, constant_tau = 0;
+  /// @}
+
+  int rows_used = 0;  ///< all that were given
 };
 
 /// Fits log e = log(C_h h^p + C_tau tau^q) by Ceres with Cauchy's loss (power_law.hpp).
@@ -44,9 +57,8 @@ struct OrderFit {
 /// Rows that share a mesh or a step size share a part of their errors. So a group, all rows of one mesh or of
 /// one step size, is what counts:
 /// - The full model or one with a single term is selected by the Bayesian information criterion with the
-/// number
-///   of groups, so that a term without effect is omitted. When only one variable varies, the other term is a
-///   plateau; a plateau beside an order needs four groups.
+///   number of groups, so that a term without effect is omitted. When only one variable varies, the other
+///   term is a plateau; a plateau beside an order needs four groups.
 /// - 95% intervals are those of the jackknife (Efron, Stein, Ann. Statist. 9, 1981) that leaves out one group
 ///   after the other, with Student's t of one degree of freedom less than groups in which the term is seen:
 ///   its share of the error is three times the scatter, a fifth at most. Three such groups are needed, and an

@@ -10,15 +10,23 @@ namespace esfem {
 
 /// The rows of one mesh or of one step size.
 struct Group {
-  double place;  ///< log h or log tau
-  std::vector<int> rows;
+  double place;           ///< log h or log tau
+  std::vector<int> rows;  ///< their numbers in the LogErrors, from 0
 };
 
 /// The rows and their groups, from coarse to fine.
 struct GroupedErrors {
-  LogErrors rows;
-  double centre_h = 0, centre_tau = 0;  ///< of the logarithms, which are less these
-  std::vector<Group> meshes, step_sizes;
+  LogErrors rows;  ///< with log h and log tau less their means
+
+  /// The means of log h and of log tau.
+  /// @{
+  double centre_h = 0, centre_tau = 0;
+  /// @}
+
+  std::vector<Group> meshes;      ///< rows of equal h
+  std::vector<Group> step_sizes;  ///< rows of equal tau
+
+  /// Step sizes or meshes.
   const std::vector<Group>& groups(bool in_tau) const { return in_tau ? step_sizes : meshes; }
 };
 
@@ -30,7 +38,9 @@ std::vector<Group> groups_of(const std::vector<double>& places);
 GroupedErrors grouped_errors(const std::vector<double>& h, const std::vector<double>& tau,
                              const std::vector<double>& error);
 
+/// The rows with these numbers, in this order.
 LogErrors chosen(const LogErrors& rows, const std::vector<int>& which);
+/// All rows but those of a group, in their order.
 LogErrors without(const LogErrors& rows, const Group& group);
 
 }  // namespace esfem

@@ -10,7 +10,12 @@ namespace esfem {
 
 /// Logarithms of rows (h, tau, error).
 struct LogErrors {
+  /// One a row.
+  /// @{
   std::vector<double> h, tau, error;
+  /// @}
+
+  /// How many there are.
   int rows() const { return static_cast<int>(error.size()); }
 };
 
@@ -19,13 +24,16 @@ enum class Term { none, plateau, power };
 
 /// e = C_h h^p + C_tau tau^q with positive constants; a plateau has the order 0.
 struct PowerLaw {
-  Term h = Term::none, tau = Term::none;
+  Term h = Term::none;    ///< what C_h h^p is
+  Term tau = Term::none;  ///< what C_tau tau^q is
+
   /// log C_h, p, log C_tau, q.
   std::array<double, 4> parameters = {absent, 0, absent, 0};
   double cost = 0;  ///< sum of the losses of the residuals
 
   /// The logarithm of a constant that is zero.
   static constexpr double absent = -1e3;
+  /// Places in `parameters` of those that are fitted.
   std::vector<int> free_parameters() const;
 };
 

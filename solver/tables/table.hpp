@@ -19,18 +19,19 @@ using Errors = std::map<std::string, std::map<std::string, double>>;
 
 /// One run of an experiment.
 struct Row {
-  std::string cell;
-  int level = 0;
-  double h = 0;  ///< measured largest edge length of the initial triangulation
-  int nodes = 0;
-  double tau = 0;
-  int steps = 0;
+  std::string cell;           ///< its name, unique in the table
+  int level = 0;              ///< of the mesh, coarse to fine
+  double h = 0;               ///< measured largest edge length of the initial triangulation
+  int nodes = 0;              ///< of the mesh
+  double tau = 0;             ///< step size
+  int steps = 0;              ///< how many were taken
   std::string status = "ok";  ///< "ok", "singular at t = ..: why" (all before it is good), or "failed: why"
-  double seconds = 0;
-  double peak_memory_mb = 0;
-  Errors errors;                         ///< maxima over time
+  double seconds = 0;         ///< wall-clock time of the run
+  double peak_memory_mb = 0;  ///< of the process
+  Errors errors;              ///< maxima over time
   std::map<std::string, double> values;  ///< other numbers that claims are about (pinch_time, ..)
   std::map<std::string, std::vector<double>> series;  ///< "t" and what was recorded at these times
+
   /// What distinguishes the run from others except mesh and step size, as strings and numbers: {"flow":
   /// "dziuk", "bdf": 4}.
   nlohmann::json labels = nlohmann::json::object();
@@ -61,21 +62,25 @@ using Interval = std::array<double, 2>;
 
 /// A fitted order (fit_orders.hpp).
 struct Fit {
-  std::string quantity, norm, variable;  ///< variable: "h" | "tau"
-  double order = 0;
-  std::optional<Interval> ci95;
-  std::vector<double> slopes;  ///< between neighbours, coarse to fine
-  std::string remark;          ///< why there is no interval, or what the order means
-  int rows_used = 0;
+  std::string quantity;                              ///< key of Row::errors
+  std::string norm;                                  ///< key of Row::errors[quantity]
+  std::string variable;                              ///< "h" | "tau"
+  double order = 0;                                  ///< in the variable
+  std::optional<Interval> ci95;                      ///< none where `remark` says why
+  std::vector<double> slopes;                        ///< between neighbours, coarse to fine
+  std::string remark;                                ///< why there is no interval, or what the order means
+  int rows_used = 0;                                 ///< of the table
   nlohmann::json labels = nlohmann::json::object();  ///< of the rows; none when the table has but one variant
 };
 
 /// Schema "esfem-table/1" of results/PRESET/STEM.json. A cell file is a table with one row.
 struct Table {
-  std::string experiment, paper;
-  nlohmann::json parameters = nlohmann::json::object(), provenance = nlohmann::json::object();
-  std::vector<Row> rows;
-  std::vector<Fit> fits;
+  std::string experiment;                                ///< the STEM of its files
+  std::string paper;                                     ///< its key, "kll19"; "esfem": this project
+  nlohmann::json parameters = nlohmann::json::object();  ///< of the experiment, "preset" among them
+  nlohmann::json provenance = nlohmann::json::object();  ///< how it was made: program, machine, time
+  std::vector<Row> rows;                                 ///< one a run
+  std::vector<Fit> fits;                                 ///< of fit_table
 };
 
 /// Non-finite errors and series values become null, and a row "ok" with such an error becomes a failed one: a
@@ -89,7 +94,9 @@ Table table_from_json(const nlohmann::json& json, const std::string& source);
 /// The table as CSV (one line a row, one column an error), and as LaTeX (booktabs) with EOC columns as the
 /// papers print them: one block per mesh with EOC in tau between neighbouring step sizes, and one per step
 /// size with EOC in the measured h.
+/// @{
 std::string to_csv(const Table& table);
 std::string to_latex(const Table& table);
+/// @}
 
 }  // namespace esfem

@@ -8,6 +8,7 @@
 
 namespace esfem {
 
+/// Largest order q of BDF.
 constexpr int max_bdf_order = 5;
 
 /// Throws InputError unless 1 <= q <= 5.
@@ -20,8 +21,8 @@ std::vector<double> bdf_gamma(int q);
 
 /// The weights of BDF and of extrapolation of one order q: delta_0..delta_q, gamma_0..gamma_{q-1}.
 struct BdfWeights {
-  std::array<double, max_bdf_order + 1> delta = {};
-  std::array<double, max_bdf_order> gamma = {};
+  std::array<double, max_bdf_order + 1> delta = {};  ///< 0 beyond delta_q
+  std::array<double, max_bdf_order> gamma = {};      ///< 0 beyond gamma_{q-1}
 };
 
 /// Those of equal steps: bdf_delta and bdf_gamma.
@@ -46,6 +47,7 @@ class BdfStep {
   const std::array<double, max_bdf_order + 1> delta;  ///< delta_0..delta_q
   const std::array<double, max_bdf_order> gamma;      ///< gamma_0..gamma_{q-1}
 
+  /// A History makes them. past: the q newest states, newest first, which must outlive the object.
   BdfStep(double t, double tau, int order, const BdfWeights& weights,
           const std::array<const State*, max_bdf_order>& past)
       : t(t), tau(tau), order(order), delta(weights.delta), gamma(weights.gamma), past_(past) {}

@@ -17,10 +17,10 @@ namespace esfem {
 /// How far a run has come: its newest step, and of an adaptive run the size wanted for the next step, the
 /// number of rejected steps, and the least end time for which the sizes of its steps are the same.
 struct RunPosition {
-  int n = 0;
-  double tau = 0;
-  int rejected = 0;
-  double least_end = 0;
+  int n = 0;             ///< the newest step
+  double tau = 0;        ///< adaptive: size wanted for the next step
+  int rejected = 0;      ///< adaptive: steps rejected so far
+  double least_end = 0;  ///< adaptive: least end time with the same steps
 };
 
 /// A Field to the last bit, for CBOR: {"rows", "columns", "values": its doubles as they lie in memory}.
@@ -66,6 +66,7 @@ nlohmann::json unseal(const std::string& bytes);
 /// FILE.previous when it is first replaced.
 class Checkpoint {
  public:
+  /// Takes a message for the user.
   using Say = std::function<void(const std::string& message)>;
 
   /// The file is replaced (as a whole) every `seconds` seconds of wall-clock time at most; 0: at every step.
@@ -111,11 +112,12 @@ class Checkpoint {
     });
   }
 
-  /// Writes the file when it is time to, or at once. Throws InputError when it cannot be written.
+  /// Writes the file when it is time to. Throws InputError when it cannot be written.
   template <class State>
   void save_when_due(const RunPosition& progress, const History<State>& past) {
     if (std::chrono::steady_clock::now() - saved_ >= interval_) save(progress, past);
   }
+  /// The same at once.
   template <class State>
   void save(const RunPosition& progress, const History<State>& past) {
     nlohmann::json states = nlohmann::json::array();

@@ -14,8 +14,8 @@ namespace esfem {
 /// A Field of a State together with its name in messages.
 template <class State>
 struct NamedField {
-  const char* name;
-  Field State::*member;
+  const char* name;      ///< "x", "u": also in checkpoints
+  Field State::*member;  ///< the Field
 };
 
 /// The newest states of a run, newest first: back(j) is state n-1-j when step n is computed.
@@ -37,9 +37,13 @@ class History {
     states_.reserve(capacity);
   }
 
+  /// How many states there are.
   int size() const { return static_cast<int>(states_.size()); }
+  /// How many states are kept.
   int capacity() const { return capacity_; }
 
+  /// The state j steps before the newest one. Throws InputError unless 0 <= j < size().
+  /// @{
   const State& back(int j) const {
     require(j + 1);
     return states_[j];
@@ -48,6 +52,7 @@ class History {
     require(j + 1);
     return states_[j];
   }
+  /// @}
 
   /// Takes the contents of `next` as the newest state. `next` keeps Fields of the same size, whose values are
   /// stale: the storage of the oldest state, or a copy as long as the history is not full.

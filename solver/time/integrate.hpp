@@ -19,14 +19,16 @@ namespace esfem {
 /// What a run starts from: a state, and for Start::exact the exact solution.
 template <class State>
 struct StartingValues {
-  State initial;
-  std::function<State(double t)> exact;
+  State initial;                         ///< its t is replaced by the first time of the steps
+  std::function<State(double t)> exact;  ///< the exact state at a time; may be empty
+
   /// Equal steps: the states before the initial one, newest first, as an earlier run of the same step size
   /// has left them. With q - 1 of them or more, there are no starting steps.
   std::vector<State> before = {};
   /// Called after each substep of the starting steps, if there is one.
   std::function<void(double t)> after_substep = {};
 
+  /// exact: what Start::exact with q > 1 needs.
   StartingValues(State initial, std::function<State(double t)> exact = {})
       : initial(std::move(initial)), exact(std::move(exact)) {}
 };
@@ -57,6 +59,9 @@ void at_step(int n, const double& t, Body&& body) {
   }
 }
 
+/// @cond
+
+/// Whether a flow has settle(past, next).
 template <class Flow, class = void>
 struct Settles : std::false_type {};
 template <class Flow>
@@ -64,6 +69,8 @@ struct Settles<Flow,
                std::void_t<decltype(std::declval<Flow&>().settle(
                    std::declval<History<typename Flow::State>&>(), std::declval<typename Flow::State&>()))>>
     : std::true_type {};
+
+/// @endcond
 
 /// What a flow with settle(past, next) changes in a new state and those before it, between two steps.
 template <class Flow>
@@ -160,13 +167,16 @@ bool take_starting_steps(Flow& flow, const UniformSteps& steps,
   return goes_on;
 }
 
+/// How many states the History of a run with these steps keeps.
 inline int states_kept(const UniformSteps& steps) {
   return steps.order;
 }
+/// Whether the run has taken all its steps.
 template <class State>
 bool is_at_end(const UniformSteps& steps, const RunPosition& done, const History<State>&) {
   return done.n >= steps.steps;
 }
+/// Computes `next`, the state after the newest one of `past`.
 template <class Flow>
 void take_next_step(Flow& flow, const UniformSteps& steps, const History<typename Flow::State>& past,
                     RunPosition& done, typename Flow::State& next) {
@@ -179,12 +189,14 @@ template <class State>
 bool can_be_resumed(const UniformSteps&, const RunPosition&, const History<State>& past) {
   return past.size() == past.capacity();
 }
+/// Whether this state is the last one from which a run with a later end can resume, so that it is to be
+/// saved: such a run can resume from any state at equal steps.
 inline bool is_last_to_resume(const UniformSteps&, const RunPosition&, double) {
   return false;
 }
 
-// Given times and steps that follow the solution start from the initial state alone.
-
+/// Given times and steps that follow the solution start from the initial state alone, which is pushed to
+/// `past`. Returns false when observe(0, state) ends the run.
 template <class Flow, class Steps, class Observe>
 bool take_starting_steps(Flow&, const Steps&, const StartingValues<typename Flow::State>& start,
                          const Observe& observe, History<typename Flow::State>& past, RunPosition&) {
@@ -198,6 +210,10 @@ bool take_starting_steps(Flow&, const Steps&, const StartingValues<typename Flow
   return goes_on;
 }
 
+// Given times.
+
+/// The same for given times.
+/// @{
 inline int states_kept(const GivenTimes& steps) {
   return steps.order;
 }
@@ -218,6 +234,9 @@ bool can_be_resumed(const GivenTimes&, const RunPosition&, const History<State>&
 inline bool is_last_to_resume(const GivenTimes&, const RunPosition&, double) {
   return false;
 }
+/// @}
+
+// Steps that follow the solution.
 
 /// Takes one step to next.t and returns the factor for the size of the following one. Throws NumericsError
 /// when the estimated error is more than 4 times the tolerance.
@@ -242,9 +261,11 @@ double attempt_step(Flow& flow, const AdaptiveSteps& steps, const History<typena
   return step_factor(steps.tolerance, error);
 }
 
+/// Two, of which the estimate of the error extrapolates.
 inline int states_kept(const AdaptiveSteps&) {
   return 2;
 }
+/// Whether the run has reached its end time.
 template <class State>
 bool is_at_end(const AdaptiveSteps& steps, const RunPosition&, const History<State>& past) {
   return past.back(0).t >= steps.end_time;
@@ -277,6 +298,7 @@ template <class State>
 bool can_be_resumed(const AdaptiveSteps& steps, const RunPosition& done, const History<State>&) {
   return done.least_end <= steps.end_time;
 }
+/// Whether the size of the next step depends on the end time already. t: that of the newest state.
 inline bool is_last_to_resume(const AdaptiveSteps& steps, const RunPosition& done, double t) {
   return least_end(t, done.tau) > steps.end_time;
 }
@@ -294,12 +316,17 @@ bool goes_on_after(Observer& observe, int n, const State& state) {
   }
 }
 
+/// @cond
+
+/// Whether a flow or an observer has progress() and resume(json).
 template <class Keeper, class = void>
 struct KeepsProgress : std::false_type {};
 template <class Keeper>
 struct KeepsProgress<
     Keeper, std::void_t<decltype(std::declval<Keeper&>().resume(std::declval<Keeper&>().progress()))>>
     : std::true_type {};
+
+/// @endcond
 
 /// A flow or an observer that has progress() and resume(json) is saved and resumed with the run.
 template <class Keeper>
@@ -309,8 +336,10 @@ void attach_progress(Checkpoint& checkpoint, Keeper& keeper) {
                       [&keeper](const nlohmann::json& saved) { keeper.resume(saved); });
 }
 
+/// The steps of a run, those before it was resumed included.
 struct StepCount {
-  int steps = 0, rejected = 0;
+  int steps = 0;     ///< how many it has taken
+  int rejected = 0;  ///< adaptive: how many it has repeated with a smaller size
 };
 
 /// Runs a flow: calls observer(n, state) for n = 0, 1, .., the starting steps included. A flow has a type

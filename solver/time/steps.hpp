@@ -14,22 +14,25 @@ namespace esfem {
 /// size (global order 2 at most). substeps: the same method started by a cascade with step size tau/K, every
 /// K-th kept.
 struct Start {
-  enum Kind { exact, cascade, substeps } kind = exact;
-  int substeps_per_step = 1;  ///< K
+  /// Where they come from.
+  enum Kind { exact, cascade, substeps } kind = exact;  ///< with order 1 of no meaning
+  int substeps_per_step = 1;                            ///< K
 };
 /// Parses "exact" | "cascade" | "substeps:K"; throws InputError that lists these.
 Start parse_start(const std::string& text);
+/// Its inverse.
 std::string to_string(const Start& start);
 
 /// Equal steps.
 struct UniformSteps {
-  int order = 2;  ///< q of BDF
-  double tau = 0;
-  int steps = 0;  ///< starting steps counted
-  Start start = {};
+  int order = 2;          ///< q of BDF
+  double tau = 0;         ///< step size, to be set
+  int steps = 0;          ///< starting steps counted
+  Start start = {};       ///< of the states 1..q-1
   int first = 0;          ///< state n is that at t = start_time + (first + n) tau
   double start_time = 0;  ///< of a run whose initial state is not one of t = 0
 
+  /// The time of state n.
   double time(int n) const { return start_time + (first + n) * tau; }
 };
 /// Throws InputError unless 1 <= order <= 5, tau > 0, steps >= 0, first >= 0, K >= 1, start_time is finite.
@@ -41,9 +44,9 @@ void check_steps(const UniformSteps& steps);
 /// estimate. A step is rejected, and repeated from the same states with half its size, when the estimate is
 /// more than 4 times the tolerance, or when it throws a NumericsError.
 struct AdaptiveSteps {
-  std::string controlled = "";  ///< name of a field of the State
-  int order = 2;                ///< of BDF, 1 or 2
-  double end_time = 0;
+  std::string controlled = "";     ///< name of a field of the State
+  int order = 2;                   ///< of BDF, 1 or 2
+  double end_time = 0;             ///< of the last state
   double tolerance = 1e-3;         ///< of the estimate of each step, in `units`
   double first_step = 1e-6;        ///< not controlled itself; a hundredth of it is the smallest step
   double largest_step = 0;         ///< 0: no bound
@@ -56,21 +59,26 @@ void check_steps(const AdaptiveSteps& steps);
 
 /// Steps from each time to the next; state n is that at times[n].
 struct GivenTimes {
-  int order = 1;  ///< of BDF; the states before the order-th are found by lower orders
-  std::vector<double> times;
+  int order = 1;              ///< of BDF; the states before the order-th are found by lower orders
+  std::vector<double> times;  ///< increasing, the first is that of the initial state
 };
 /// Throws InputError unless 1 <= order <= 5 and there are increasing times.
 void check_steps(const GivenTimes& steps);
 
-/// What the numbers of a step depend on: all but where the run ends.
+/// What the numbers of a step depend on: all but where the run ends; of given times all of
+/// them.
+/// @{
 nlohmann::json identity_of_steps(const UniformSteps& steps);
 nlohmann::json identity_of_steps(const AdaptiveSteps& steps);
 nlohmann::json identity_of_steps(const GivenTimes& steps);
+/// @}
 
 /// Why a run with this progress does not lead to this end; empty when it does.
+/// @{
 std::string objection_of_end(const UniformSteps& steps, const RunPosition& done);
 std::string objection_of_end(const AdaptiveSteps& steps, const RunPosition& done);
 std::string objection_of_end(const GivenTimes& steps, const RunPosition& done);
+/// @}
 
 /// The time after t for a step of about tau: the last step ends at end_time, and what remains for one step to
 /// two is halved.
