@@ -197,6 +197,10 @@ bool wants_history(const JsonReader& output, const EvolveConfig& config) {
   return wanted;
 }
 
+/// What is expected for surface and mesh, whose names are often given alone.
+constexpr char a_surface[] = "an object like {\"name\": \"sphere\"}";
+constexpr char a_mesh[] = "an object like {\"edge_length\": 0.2} or {\"file\": \"NAME\"}";
+
 /// Empty when the key is not there.
 std::string file_name(const JsonReader& output, const std::string& key) {
   if (!output.has(key)) return "";
@@ -215,12 +219,25 @@ SnapshotPlan snapshot_plan(const JsonReader& output) {
       if (!time.is_number()) output.wrong_type("times", "an array of numbers", time);
       plan.times.push_back(time);
     }
+    if (plan.times.empty()) throw InputError(output.where() + ": times: found none; expected one or more");
   }
   if (plan.pvd.empty() && (output.has("every") || output.has("every_time") || output.has("times"))) {
     throw InputError(output.where() +
                      ": every, every_time and times select snapshots; expected the key vtu, too");
   }
   return plan;
+}
+
+/// Snapshots are taken at times of the run.
+void require_times_in_run(const EvolveConfig& config) {
+  const double begin = config.grid.time(0);
+  const double end = config.adaptive ? config.adaptive->end_time : config.grid.time(config.grid.steps);
+  const double slack = 1e-9 * (end - begin);
+  for (const double t : config.snapshots.times)
+    if (!(t >= begin - slack && t <= end + slack))
+      throw InputError(
+          config.source +
+          format(": output: times: found %g; expected times of the run, %g to %g", t, begin, end));
 }
 
 /// A configuration without its mesh, and what that will be made of.
@@ -266,7 +283,7 @@ Keys read_keys(const json& given, const std::string& source) {
   config.parameters = settings(reader, "parameters", entry.parameters, entry);
   read_formulas(reader, config);
   if (reader.has("surface")) {
-    const json& surface = reader.object("surface");
+    const json& surface = reader.object("surface", a_surface);
     config.surface = headed(source, [&] { return named_surface(surface, given_names(config)); });
   }
   if (entry.takes_own_parameters) require_named_parameters(reader, config);
@@ -292,7 +309,7 @@ bool is_at_rest(const EvolveConfig& config) {
 EvolveConfig checked_keys(const json& given, const std::string& source) {
   Keys keys = read_keys(given, source);
   if (!keys.earlier)
-    check_mesh_keys(JsonReader(JsonReader(given, source).object("mesh"), source + ": mesh"),
+    check_mesh_keys(JsonReader(JsonReader(given, source).object("mesh", a_mesh), source + ": mesh"),
                     keys.config.surface.has_value());
   return std::move(keys.config);
 }
@@ -305,7 +322,7 @@ EvolveConfig evolve_config(const json& given, const std::string& source) {
   const Entry& entry = *config.entry;
   const JsonReader reader(keys.description, source);
   const std::string place = earlier ? "initial" : "mesh";
-  const JsonReader mesh(reader.object(place), source + ": " + place);
+  const JsonReader mesh(reader.object(place, earlier ? "an object" : a_mesh), source + ": " + place);
   if (mesh.has("file") && is_snapshot_of(mesh.text("file"), config.snapshots.pvd))
     throw InputError(
         source + ": output: found vtu = \"" + config.snapshots.pvd +
@@ -324,6 +341,7 @@ EvolveConfig evolve_config(const json& given, const std::string& source) {
   move_near_origin(config);
   scale_defaults(reader, config);
   if (earlier) require_start(config, source + ": initial");
+  require_times_in_run(config);
   take_initial_values(config);
   return std::move(keys.config);
 }

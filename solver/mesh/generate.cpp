@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/constants.hpp"
 #include "solver/disjoint_sets.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/delaunay.hpp"
@@ -188,15 +189,17 @@ void check_positive(double edge_length, const Surface& surface) {
         format("%s: edge length %g, expected a positive number", surface.name.c_str(), edge_length));
 }
 
+constexpr double most_nodes = 1e8;
+
 /// Refuses an edge length that is a mistake in the unit, say.
 void check_count(double edge_length, const Surface& surface) {
   // Equilateral triangles on the bounding sphere, which most surfaces do not fill.
-  const double most = 1e8, ratio = surface.bounding_radius / edge_length, nodes = 14.5 * ratio * ratio;
-  if (nodes > most)
+  const double ratio = surface.bounding_radius / edge_length, nodes = 14.5 * ratio * ratio;
+  if (nodes > most_nodes)
     throw InputError(
         format("%s: edge length %g on a surface of radius %g makes about %.1g nodes; expected at "
                "most %g",
-               surface.name.c_str(), edge_length, surface.bounding_radius, nodes, most));
+               surface.name.c_str(), edge_length, surface.bounding_radius, nodes, most_nodes));
 }
 
 }  // namespace
@@ -228,6 +231,12 @@ Mesh generate_mesh(const Surface& surface, double edge_length, double grading) {
   if (!(grading > 0 && grading <= 1))
     throw InputError(format("%s: grading %g, expected a number greater than 0 and at most 1",
                             surface.name.c_str(), grading));
+  // int |A|² >= 8 pi on closed surfaces (Willmore), and equilateral triangles have 2 / (sqrt(3) h²) nodes an
+  // area.
+  const double least_nodes = 16 * pi / (std::sqrt(3.0) * grading * grading);
+  if (least_nodes > most_nodes)
+    throw InputError(format("%s: grading %g makes %.1g nodes or more; expected at most %g",
+                            surface.name.c_str(), grading, least_nodes, most_nodes));
   const auto by_curvature = [&](const Vec3& y) {
     return edge_length /
            std::sqrt(1 + surface.weingarten(y).squaredNorm() * std::pow(edge_length / grading, 2));

@@ -77,9 +77,9 @@ int JsonReader::integer_within(const std::string& key, int otherwise, int low, i
   return value;
 }
 
-const Json& JsonReader::object(const std::string& key) const {
+const Json& JsonReader::object(const std::string& key, const char* expected) const {
   const Json& value = at(key);
-  if (!value.is_object()) wrong_type(key, "an object", value);
+  if (!value.is_object()) wrong_type(key, expected, value);
   return value;
 }
 

@@ -58,7 +58,7 @@ class JsonReader {
   int integer_within(const std::string& key, int otherwise, int low, int high) const;
   /// The value of a key, an object, an array or anything. Throws when it is missing or of another type.
   /// @{
-  const nlohmann::json& object(const std::string& key) const;
+  const nlohmann::json& object(const std::string& key, const char* expected = "an object") const;
   const nlohmann::json& array(const std::string& key) const;
   const nlohmann::json& value(const std::string& key) const { return at(key); }
   /// @}

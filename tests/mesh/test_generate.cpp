@@ -240,6 +240,11 @@ TEST(GenerateMesh, RefusesAnEdgeLengthThatMakesNoMesh) {
   }
 }
 
+TEST(GenerateMesh, RefusesAGradingThatMakesTooManyNodes) {
+  EXPECT_EQ(message_of<InputError>([] { generate_mesh(torus(1, 0.4), 0.3, 1e-5); }),
+            "torus: grading 1e-05 makes 3e+11 nodes or more; expected at most 1e+08");
+}
+
 TEST(GenerateMesh, RefusesAnEdgeLengthThatDoesNotResolveTheSurface) {
   const auto message = message_of<InputError>([] { generate_mesh(torus(1, 0.4), 0.41); });
   EXPECT_THAT(message, AllOf(HasSubstr("0.41"), HasSubstr("0.4,"), HasSubstr("torus")));
