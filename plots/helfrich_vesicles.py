@@ -108,9 +108,10 @@ def energies_figure(rows, notes):
     top = max(row["errors"]["energy"]["surface"] / row["values"]["reference_energy"] for row in rows)
     right.loglog([low, high], [2 * top, 2 * top * (low / high)**2], color="0.5", linestyle=style.DASHES["dashed"],
                  linewidth=0.8, gid="slope")
-    right.annotate("$h^4$", (high, 2 * top * (low / high)**2), (3, 0), textcoords="offset points", color="0.4")
+    right.annotate("$O(h^4)$", ((low * high)**0.5, 2 * top * low / high), (3, 3), textcoords="offset points", fontsize=8.5)
     left.set_xlabel("$v$", labelpad=1)
     right.set_xlabel("nodes", labelpad=1)
+    style.log_ticks(right.xaxis, *right.get_xlim(), right.get_window_extent().width * 72 / figure.dpi)
     return figure
 
 
