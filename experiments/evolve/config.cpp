@@ -9,6 +9,7 @@
 #include "experiments/evolve/series_lines.hpp"
 #include "experiments/evolve/start.hpp"
 #include "experiments/evolve/units.hpp"
+#include "experiments/harness/warn.hpp"
 #include "solver/did_you_mean.hpp"
 #include "solver/error.hpp"
 #include "solver/fe/lagrange.hpp"
@@ -228,16 +229,17 @@ SnapshotPlan snapshot_plan(const JsonReader& output) {
   return plan;
 }
 
-/// Snapshots are taken at times of the run.
-void require_times_in_run(const EvolveConfig& config) {
+/// Refuses snapshots before the run; those after it are missed, as when it is made shorter for a trial.
+void check_times(const EvolveConfig& config) {
   const double begin = config.grid.time(0);
   const double end = config.adaptive ? config.adaptive->end_time : config.grid.time(config.grid.steps);
   const double slack = 1e-9 * (end - begin);
-  for (const double t : config.snapshots.times)
-    if (!(t >= begin - slack && t <= end + slack))
-      throw InputError(
-          config.source +
-          format(": output: times: found %g; expected times of the run, %g to %g", t, begin, end));
+  for (const double t : config.snapshots.times) {
+    const std::string found = config.source + format(": output: times: found %g, ", t);
+    if (t < begin - slack)
+      throw InputError(found + format("before the run; expected times from %g on", begin));
+    if (t > end + slack) return warn(found + format("after the end of the run at t = %g", end));
+  }
 }
 
 /// A configuration without its mesh, and what that will be made of.
@@ -341,7 +343,7 @@ EvolveConfig evolve_config(const json& given, const std::string& source) {
   move_near_origin(config);
   scale_defaults(reader, config);
   if (earlier) require_start(config, source + ": initial");
-  require_times_in_run(config);
+  check_times(config);
   take_initial_values(config);
   return std::move(keys.config);
 }

@@ -206,8 +206,9 @@ TEST_F(Evolve, IsTheSameWithACheckpoint) {
 
 TEST_F(Evolve, WritesSnapshotsAtTheTimesAskedFor) {
   const std::string pvd = (folder / "snapshots/run.pvd").string();
-  const json output = {{"vtu", pvd}, {"times", {0.015}}};
+  const json output = {{"vtu", pvd}, {"times", {0.015, 1000}}};
   ASSERT_EQ(run(config({{"output", output}})), exit_done) << message;
+  EXPECT_THAT(message, HasSubstr("times: found 1000, after the end of the run at t = "));
   // At the start, at t = 0.02 (the first step after 0.015), and at the end.
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder / "snapshots")) {
@@ -252,8 +253,8 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"output", {{"vtu", "snapshots"}}}}, ".pvd"},
       {{{"output", {{"vtu", "a.pvd"}, {"times", {0.02, 0.01}}}}}, "increasing"},
       {{{"output", {{"vtu", "a.pvd"}, {"times", json::array()}}}}, "times: found none"},
-      {{{"output", {{"vtu", "a.pvd"}, {"times", {-1}}}}}, "times: found -1; expected times of the run, 0 to"},
-      {{{"output", {{"vtu", "a.pvd"}, {"times", {0.01, 1000}}}}}, "times: found 1000"},
+      {{{"output", {{"vtu", "a.pvd"}, {"times", {-1}}}}},
+       "times: found -1, before the run; expected times from 0 on"},
       {{{"mesh", "a.off"}},
        "expected an object like {\"edge_length\": 0.2} or {\"file\": \"NAME\"}, found string"},
       {{{"surface", "sphere"}}, "expected an object like {\"name\": \"sphere\"}, found string"},
