@@ -44,11 +44,12 @@ Errors, --against
   formula  the formulas "exact" only
   finest   the run with the largest level and step, at the end: norms by quadrature on the surface of the coarser run of
            the difference to the values in the closest points of the finest surface ("closest_L2", ..); x is the distance
-           of the surfaces, without the tangential motion of nodes. The closest point is found to round-off. Since the
-           finest run has an error of its own, slopes next to it are too steep: of order p, between the last two levels
-           by log2(1 + 2^-p); fits take account of this (see docs/studies.md)
+           of the surfaces, without the tangential motion of nodes. The closest point is found to round-off. Orders are
+           those of the differences between neighbours in level or step, which fall as errors do; differences to the
+           finest run do not, since it has an error of its own (see docs/studies.md)
 Default: exact where there is such a solution, else finest.
-Orders are fitted to all errors of a quantity and norm, with 95% intervals where there are at least three levels.
+Orders are fitted to all errors of a quantity and norm, with 95% intervals where there are at least three levels
+(four against the finest run).
 )";
 
 /// What the errors are differences to.
@@ -79,11 +80,15 @@ Against reference_of(const json& configuration, const std::string& source, std::
   return asked ? *asked : is_known ? Against::exact : Against::finest;
 }
 
+std::string cell_name(int level, int step) {
+  return format("h%d_tau%d", level, step);
+}
+
 Cell cell_of(const json& configuration, const std::string& source, int level, int step, const json& origin) {
   const json finer = refined_configuration(configuration, level, step, source);
   checked_keys(finer, source);
   Cell cell;
-  cell.planned = planned_row(finer, format("h%d_tau%d", level, step));
+  cell.planned = planned_row(finer, cell_name(level, step));
   cell.planned.level = level;
   cell.run = [=](Row& row, const std::string& folder) {
     run_as_cell(finer, source, origin, /*wants_nodal=*/true, folder, row);
@@ -97,85 +102,82 @@ struct Solution {
   double t;
 };
 
-Solution solution_of(const Row& row, const std::string& cells) {
-  ReadMesh read = read_nodal_output(cells + "/" + row.cell + "/" + nodal_file);
-  return {{std::move(read.mesh), std::move(read.fields)}, read.t.value()};
+/// Those of the cells that have come to their end.
+std::map<std::string, Solution> solutions_of(const std::vector<Row>& rows, const std::string& cells) {
+  std::map<std::string, Solution> solutions;
+  for (const Row& row : rows) {
+    if (row.status != "ok") continue;
+    ReadMesh read = read_nodal_output(cells + "/" + row.cell + "/" + nodal_file);
+    solutions[row.cell] = {{std::move(read.mesh), std::move(read.fields)}, read.t.value()};
+  }
+  return solutions;
 }
 
-/// The errors of all rows but `finest`, relative to it.
-void compare_with(const Row& finest, const std::string& cells, std::vector<Row>& rows) {
-  const Solution reference = solution_of(finest, cells);
-  for (Row& row : rows) {
-    row.errors.clear();
-    if (row.cell == finest.cell || row.status != "ok") continue;
-    const Solution solution = solution_of(row, cells);
-    if (std::abs(solution.t - reference.t) > 1e-9 * std::abs(reference.t))
+/// How far cells are from finer ones.
+class Differences {
+ public:
+  Differences(const std::vector<Row>& rows, const std::string& cells)
+      : solutions_(solutions_of(rows, cells)) {}
+
+  /// None when one of the runs is singular or failed.
+  Errors operator()(const std::string& cell, const std::string& finer) const {
+    const auto one = solutions_.find(cell), other = solutions_.find(finer);
+    if (one == solutions_.end() || other == solutions_.end()) return {};
+    const double t = one->second.t, end = other->second.t;
+    if (std::abs(t - end) > 1e-9 * std::abs(end))
       throw InputError(
-          format("cell %s ends at t = %g, and %s, the finest, at t = %g; expected runs of one length",
-                 row.cell.c_str(), solution.t, finest.cell.c_str(), reference.t));
-    row.errors = differences(solution.functions, reference.functions);
+          format("cell %s ends at t = %g, and %s, which is finer, at t = %g; expected runs of one length",
+                 cell.c_str(), t, finer.c_str(), end));
+    return differences(one->second.functions, other->second.functions);
   }
+
+ private:
+  std::map<std::string, Solution> solutions_;
+};
+
+/// Orders in the level or in the step, from the differences of cells that are next to each other in it. Two
+/// such cells have errors e and 2^-p e. These may be aligned, as smooth errors are, or orthogonal, as those
+/// of gradients on meshes that are not nested: the difference is between (1 - 2^-p) e and (1 + 2^-p) e, and
+/// falls with the order p in any case. Differences to the finest cell do not, since its own error is a
+/// growing part of them.
+std::vector<Fit> fits_of_neighbours(const Differences& differences, const std::vector<int>& levels,
+                                    const std::vector<int>& steps, bool in_level, Table table) {
+  std::map<std::string, Errors> errors;
+  for (std::size_t i = 0; i + in_level < levels.size(); ++i)
+    for (std::size_t j = 0; j + !in_level < steps.size(); ++j) {
+      const std::string cell = cell_name(levels[i], steps[j]);
+      errors[cell] = differences(cell, cell_name(levels[i + in_level], steps[j + !in_level]));
+    }
+  for (Row& row : table.rows) {
+    row.errors = errors[row.cell];
+    (in_level ? row.tau : row.h) = in_level ? table.rows[0].tau : table.rows[0].h;
+  }
+  return fit_table(table, {});
 }
 
-/// Fits of errors against the finest run, which has errors of its own: with e = C_h h^p + C_tau tau^q for
-/// both, aligned as they are asymptotically, the difference is e less e(finest). So e(finest) of a fit is
-/// added to the differences, and the fit repeated until it does not change.
-std::vector<Fit> fits_against(const Row& finest, const Table& table) {
-  Errors names;  // of the errors that there are
-  for (const Row& row : table.rows)
-    if (!row.errors.empty()) names = row.errors;
-  Table corrected = table;
-  const int rounds = 30;
-  for (int round = 0; round < rounds; ++round) {
-    double change = 0;
-    for (const auto& [quantity, norms] : names)
-      for (const auto& [norm, first] : norms) {
-        std::vector<double> h, tau, errors;
-        for (const Row& row : corrected.rows) {
-          if (row.errors.empty() || row.status != "ok") continue;
-          h.push_back(row.h);
-          tau.push_back(row.tau);
-          errors.push_back(row.errors.at(quantity).at(norm));
-        }
-        double of_finest = 0;
-        try {
-          const OrderFit fit = fit_orders(h, tau, errors);
-          if (fit.h) of_finest += fit.constant_h * std::pow(finest.h, fit.h->order);
-          if (fit.tau) of_finest += fit.constant_tau * std::pow(finest.tau, fit.tau->order);
-        } catch (const std::exception&) {
-          continue;  // fit_table leaves it out, too
-        }
-        for (std::size_t i = 0; i < table.rows.size(); ++i) {
-          if (table.rows[i].errors.empty()) continue;
-          double& error = corrected.rows[i].errors[quantity][norm];
-          const double next = table.rows[i].errors.at(quantity).at(norm) + of_finest;
-          change = std::max(change, std::abs(next - error) / next);
-          error = next;
-        }
-      }
-    if (change < 1e-4) break;
+void add_errors_of_finest(const std::string& cells, std::vector<int> levels, std::vector<int> steps,
+                          Table& table) {
+  std::sort(levels.begin(), levels.end());
+  std::sort(steps.begin(), steps.end());
+  const std::string finest = cell_name(levels.back(), steps.back());
+  table.parameters["against"] = "finest: " + finest + ", at the end, by closest point";
+  table.parameters["orders"] = "of the differences between runs that are next to each other in level or step";
+  const Differences differences(table.rows, cells);
+  for (Row& row : table.rows) {
+    if (row.cell == finest && row.status != "ok")
+      warn("the finest run, " + finest + ", is no reference: " + row.status);
+    row.errors = row.cell == finest ? Errors() : differences(row.cell, finest);
   }
-  return fit_table(corrected, {});
-}
-
-void add_errors_of_finest(const std::string& cells, Table& table) {
-  const Row finest = *std::max_element(table.rows.begin(), table.rows.end(), [](const Row& a, const Row& b) {
-    return std::pair(a.level, -a.tau) < std::pair(b.level, -b.tau);
-  });
-  table.parameters["against"] = "finest: " + finest.cell + ", at the end, by closest point";
-  if (finest.status != "ok") {
-    for (Row& row : table.rows) row.errors.clear();
-    return warn("the finest run, " + finest.cell + ", is no reference: " + finest.status);
-  }
-  compare_with(finest, cells, table.rows);
-  table.fits = fits_against(finest, table);
+  for (const bool in_level : {true, false})
+    for (Fit& fit : fits_of_neighbours(differences, levels, steps, in_level, table))
+      table.fits.push_back(std::move(fit));
 }
 
 void print_fits(const Table& table) {
   if (table.fits.empty())
     warn(
-        "no orders: they need at least three rows with errors, of three levels or steps (five when both "
-        "vary)");
+        "no orders: they need errors of three levels or steps, so four of them when runs are compared with "
+        "each other (--against finest), and five rows when both vary");
   for (const Fit& fit : table.fits) {
     const std::string interval = fit.ci95 ? format(" in [%.2f, %.2f]", fit.ci95->at(0), fit.ci95->at(1)) : "";
     const std::string remark = fit.remark.empty() ? "" : ", " + fit.remark;
@@ -207,7 +209,7 @@ void study(const std::string& source, const std::vector<int>& levels, const std:
     const std::string folder =
         request.collect_from.empty() ? request.output + "/cells" : request.collect_from;
     if (against == Against::finest) {
-      add_errors_of_finest(folder, all);
+      add_errors_of_finest(folder, levels, steps, all);
     } else {
       all.parameters["against"] = configuration.contains("exact") ? "formula" : "exact";
       all.fits = fit_table(all, {});

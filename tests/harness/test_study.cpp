@@ -120,6 +120,27 @@ TEST_F(StudyProgram, TheHeatEquationHasTheOrdersOfItsSteps) {
   }
 }
 
+TEST_F(StudyProgram, GradientsOnMeshesThatAreNotNestedHaveTheirOrderAgainstTheFinestMesh) {
+  // The errors of gradients are orthogonal there: taken as aligned they have an order of 0.4.
+  json configuration = heat(1, 2);
+  configuration["mesh"] = {{"edge_length", 0.5}};
+  configuration["tau"] = 0.0005;
+  ASSERT_EQ(study("--levels 0-3 --against finest", configuration), 0) << message;
+  EXPECT_NEAR(order("u", "closest_H1_semi", "h"), 1, 0.1);
+  EXPECT_NEAR(order("u", "closest_L2", "h"), 2, 0.2);
+  const Table all = table();
+  for (const Fit& fit : all.fits) EXPECT_EQ(fit.rows_used, 3) << fit.quantity << ' ' << fit.norm;
+}
+
+TEST_F(StudyProgram, OrdersInLevelAndStepComeFromNeighbours) {
+  json configuration = heat(2, 1);
+  configuration["tau"] = 0.02;
+  configuration["steps"] = 3;
+  ASSERT_EQ(study("--levels 0-3 --steps 0-3 --against finest", configuration), 0) << message;
+  EXPECT_NEAR(order("u", "closest_L2", "tau"), 1, 0.1);
+  EXPECT_NEAR(order("u", "closest_H1_semi", "h"), 2, 0.2);
+}
+
 TEST_F(StudyProgram, AnEllipsoidAgainstTheFinestMesh) {
   json configuration = read_json(ESFEM_SOURCE_DIR "/reference/examples/study_ellipsoid.json");
   configuration["steps"] = 2;
