@@ -34,13 +34,17 @@ std::string did_you_mean(const std::string& unknown, const std::vector<std::stri
   };
   const std::size_t longest = 100;  // of a text that is a misspelt name
   if (unknown.size() > longest) return "";
-  int least = std::min(2, static_cast<int>(unknown.size()) / 2) + 1;
+  const int most = std::min(2, static_cast<int>(unknown.size()) / 2);
+  int least = 2 * most + 1;
   std::string closest;
   for (const std::string& name : known) {
     const int distance = edit_distance(lower(unknown), lower(name));
-    if (distance == least) closest.clear();
-    if (distance >= least) continue;
-    least = distance;
+    if (distance > most) continue;
+    // Of names that are equally close, the one that only goes on: "steps" and not "stop" for "step".
+    const int twice = 2 * distance - (lower(name).rfind(lower(unknown), 0) == 0 ? 1 : 0);
+    if (twice == least) closest.clear();
+    if (twice >= least) continue;
+    least = twice;
     closest = name;
   }
   return closest.empty() ? "" : "; did you mean \"" + closest + "\"?";

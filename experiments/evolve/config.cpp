@@ -2,6 +2,7 @@
 #include "experiments/evolve/config.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "experiments/evolve/formulas.hpp"
 #include "experiments/evolve/initial.hpp"
@@ -88,12 +89,41 @@ std::string words_for(const Entry& entry) {
   return entry.problem.empty() ? "flow " + entry.flow : "problem " + entry.problem;
 }
 
+std::set<std::string> names_of(const std::vector<Key>& keys) {
+  std::set<std::string> names;
+  for (const Key& key : keys) names.insert(key.name);
+  return names;
+}
+
+/// Refuses keys that are not known at the top, and says where one of this name belongs.
+void accept_only_known(const JsonReader& reader, const json& given, const std::set<std::string>& known) {
+  std::map<std::string, std::set<std::string>> parts = {
+      {"mesh", {"file", "edge_length", "grading", "subdivisions", "remesh", "refine", "curve"}},
+      {"adaptive", {"end_time", "tolerance", "first_step", "largest_step"}},
+      {"output", {"nodal", "history", "series", "vtu", "every", "every_time", "times", "checkpoint"}}};
+  for (const Entry& entry : entries()) {
+    parts["variant"].merge(names_of(entry.variant));
+    parts["parameters"].merge(names_of(entry.parameters));
+  }
+  for (const auto& [part, keys] : parts)
+    for (const std::string& key : keys)
+      if (given.contains(key) && known.count(key) == 0)
+        throw InputError(reader.where() + ": found " + key + ", which belongs in \"" + part + "\"");
+  reader.accept_only(known);
+}
+
 /// What is given under "variant" or "parameters", where the flow has such keys.
 Settings settings(const JsonReader& reader, const std::string& key, const std::vector<Key>& known,
                   const Entry& entry) {
   const std::string where = reader.where() + ": " + key;
   const bool takes_any_number = entry.takes_own_parameters && key == "parameters";
   if (!reader.has(key)) return Settings(json::object(), known, where);
+  const bool is_variant = key == "variant";
+  for (const Key& other : is_variant ? entry.parameters : entry.variant)
+    if (reader.object(key).contains(other.name) && !takes_any_number &&
+        names_of(known).count(other.name) == 0)
+      throw InputError(where + ": found " + other.name + ", which belongs in \"" +
+                       (is_variant ? "parameters" : "variant") + "\"");
   if (known.empty() && !takes_any_number) {
     throw InputError(reader.where() + ": " + words_for(entry) + " has no " +
                      (key == "variant" ? "variants" : key) + "; expected no key " + key);
@@ -130,7 +160,8 @@ void read_formulas(const JsonReader& reader, EvolveConfig& config) {
   }
   for (const std::string& key : formula_keys())
     if (reader.has(key) && known.count(key) == 0 && !names_file(reader, key))
-      throw InputError(reader.where() + ": " + name + " takes no " + key + "; expected no key " + key);
+      throw InputError(reader.where() + ": " + name + " takes no " + key + "; expected " +
+                       (names_of(entry.variant).count(key) > 0 ? "it in \"variant\"" : "no key " + key));
 }
 
 /// Refuses a number of one's own that no formula names: it is misspelt.
@@ -213,6 +244,11 @@ std::string file_name(const JsonReader& output, const std::string& key) {
 SnapshotPlan snapshot_plan(const JsonReader& output) {
   SnapshotPlan plan;
   plan.pvd = file_name(output, "vtu");
+  const std::string ending = ".pvd";
+  if (!plan.pvd.empty() && (plan.pvd.size() <= ending.size() ||
+                            plan.pvd.compare(plan.pvd.size() - ending.size(), ending.size(), ending) != 0))
+    throw InputError(output.where() + ": found vtu = \"" + plan.pvd +
+                     "\"; expected a name that ends in .pvd");
   plan.every = output.integer_within("every", 0, 0, 100000000);
   if (output.has("every_time")) plan.every_time = positive_or(output, "every_time", 0);
   if (output.has("times")) {
@@ -256,7 +292,7 @@ Keys read_keys(const json& given, const std::string& source) {
                                  "tau",     "steps",      "start",    "quadrature", "variant", "output",
                                  "problem", "parameters", "adaptive", "limits",     "initial", "stop"};
   known.merge(formula_keys());
-  JsonReader(given, source).accept_only(known);
+  accept_only_known(JsonReader(given, source), given, known);
   Keys keys{given, read_initial(given, source), {}, {}};
   if (keys.earlier) keys.description.update(keys.earlier->taken_over);
   const JsonReader reader(keys.description, source);

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 
+#include "experiments/harness/warn.hpp"
 #include "solver/error.hpp"
 #include "solver/mesh/curve.hpp"
 #include "solver/mesh/generate.hpp"
@@ -30,8 +31,16 @@ Mesh subdivided(const Surface& surface, int subdivisions, const std::string& whe
 /// With edges of one length, or graded by curvature.
 Mesh generated(const Surface& surface, const JsonReader& description) {
   const double edge_length = description.number("edge_length");
-  return description.has("grading") ? generate_mesh(surface, edge_length, description.number("grading"))
-                                    : generate_mesh(surface, edge_length);
+  const double ratio = surface.bounding_radius / edge_length, nodes = 14.5 * ratio * ratio;
+  if (nodes > 3e5 && nodes < 1e8)  // more are refused
+    warn(description.where() +
+         format(": edge_length = %g on a surface of radius %g makes up to %.1g corners of "
+                "triangles, which takes minutes",
+                edge_length, surface.bounding_radius, nodes));
+  return headed(description.where(), [&] {
+    return description.has("grading") ? generate_mesh(surface, edge_length, description.number("grading"))
+                                      : generate_mesh(surface, edge_length);
+  });
 }
 
 /// The mesh of this degree with the nodal values on it, and the file's numbers of its first nodes.

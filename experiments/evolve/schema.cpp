@@ -165,7 +165,7 @@ json common_properties() {
       {"checkpoint", described(text, "the same command resumes from it")},
       {"every", described(integer(0, 100000000), "snapshots at every n-th step")},
       {"every_time", described(positive, "snapshots at multiples of this time")},
-      {"times", {{"type", "array"}, {"items", {{"type", "number"}}}}}};
+      {"times", {{"type", "array"}, {"minItems", 1}, {"items", {{"type", "number"}}}}}};
   const json stop = {
       {"speed", described(positive, "stationary: largest |v| in the nodes below this")},
       {"energy_rate", described(positive, "stationary: |dE/dt| of the flow's energy below this")},

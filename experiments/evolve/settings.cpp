@@ -22,6 +22,9 @@ json number_in(const JsonReader& reader, const Key& key) {
 }
 
 json known_word(const JsonReader& reader, const Key& key) {
+  if (!reader.value(key.name).is_string())
+    reader.wrong_type(key.name, ("one of " + listed({key.words.begin(), key.words.end()})).c_str(),
+                      reader.value(key.name));
   const std::string value = reader.text(key.name);
   if (std::find(key.words.begin(), key.words.end(), value) != key.words.end()) return value;
   std::set<std::string> known(key.words.begin(), key.words.end());
