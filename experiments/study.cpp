@@ -32,7 +32,7 @@ using nlohmann::json;
 const char* const help =
     R"(Convergence of a configuration of evolve: the same problem on finer meshes and with smaller steps.
 Example: study reference/examples/study_ellipsoid.json --levels 0-3 --output build/study
-         python3 plots/study.py build/study/table.json build/study
+         /usr/bin/python3 plots/study.py build/study/table.json build/study
 
 Level l halves the edge length l times: edge_length and grading of a generated mesh, subdivisions + l; of a mesh file the
 length of "remesh", or "refine" + l, which cuts each triangle into four: on the surface, if one is given, with "curve" on

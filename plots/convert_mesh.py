@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A mesh for `evolve` from what meshio reads: VTU, legacy VTK, XDMF, Abaqus, Nastran, Medit, and others.
 
-  python3 plots/convert_mesh.py scan.vtk scan.msh
+  /usr/bin/python3 plots/convert_mesh.py scan.vtk scan.msh
   build/bin/evolve CONFIG.json          with "mesh": {"file": "scan.msh"}
 
 Triangles of degree 1 to 4 are kept with their curved nodes, and what else evolve reads: 4-node quadrangles, and the

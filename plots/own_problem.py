@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Snapshots of a run of evolve side by side, coloured by one of its fields, a vector field by its length.
 
-Usage: python3 plots/own_problem.py RUN.pvd [FIELD OUTPUT.png] [--times 0,0.1,0.5]
-For example: python3 plots/own_problem.py build/turing/surfaces.pvd u1 turing.png
+Usage: /usr/bin/python3 plots/own_problem.py RUN.pvd [FIELD OUTPUT.png] [--times 0,0.1,0.5]
+For example: /usr/bin/python3 plots/own_problem.py build/turing/surfaces.pvd u1 turing.png
 Without FIELD: lists the fields of the file. Without --times the pictures are nearest to four equally spaced times.
 """
 import os

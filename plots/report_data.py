@@ -14,7 +14,7 @@ SEVERITY = ("claim not met", "not reproduced", "corrected", "cannot be told", "r
 HOLDING = ("reproduced, but", "reproduced", "holds")
 # What is counted beside the papers' statements, with the heads of the columns. What this project's own runs show
 # (finding, regression) is no statement of a paper, and is not counted with them.
-COUNTED_BASES = {"theory": "theorems and identities hold", "independent": "independent values met"}
+COUNTED_BASES = {"theory": "theorems and identities hold", "independent": "values of other programs and formulas met"}
 OWN = ("finding", "regression")
 BEYOND_STEMS = tuple(figure.stem for figure in BEYOND)
 PAPER_KEYS = tuple(paper.key for paper in PAPERS)

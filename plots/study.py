@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Errors of a convergence study (`study CONFIG.json ..`) against the mesh width and the step size.
 
-Usage: python3 plots/study.py FOLDER/table.json [FIGURES]
+Usage: /usr/bin/python3 plots/study.py FOLDER/table.json [FIGURES]
 Writes study_h.{pdf,png} where there are several meshes, study_tau.{pdf,png} where there are several step sizes. Dashed
 lines show the expected order: k + 1 in L2 and k in H1 for elements of degree k, q for BDFq; dotted ones a higher order
 that the errors follow.

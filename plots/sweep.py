@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A phase diagram of a sweep (`evolve CONFIG.json --set ..`): one quantity over two varied keys.
 
-Usage: python3 plots/sweep.py FOLDER/table.json --x parameters.gamma --y parameters.b --colour max_u1 [--output STEM]
+Usage: /usr/bin/python3 plots/sweep.py FOLDER/table.json --x parameters.gamma --y parameters.b --colour max_u1 [--output STEM]
 Writes FOLDER/sweep.{pdf,png}. A name is a varied key (its last part is enough), tau, steps, h, nodes, seconds, status, or
 a number of the rows: max_u1, area, u_unlifted_L2, .. Runs that failed are crossed out; what they say is in the table.
 """
