@@ -160,8 +160,8 @@ void read_formulas(const JsonReader& reader, EvolveConfig& config) {
   }
   for (const std::string& key : formula_keys())
     if (reader.has(key) && known.count(key) == 0 && !names_file(reader, key))
-      throw InputError(reader.where() + ": " + name + " takes no " + key + "; expected " +
-                       (names_of(entry.variant).count(key) > 0 ? "it in \"variant\"" : "no key " + key));
+      throw InputError(reader.where() + ": " + name + " takes no " + key + "; expected no key " + key +
+                       (names_of(entry.variant).count(key) > 0 ? " here: \"variant\" has one" : ""));
 }
 
 /// Refuses a number of one's own that no formula names: it is misspelt.

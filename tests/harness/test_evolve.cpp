@@ -263,7 +263,7 @@ TEST_F(Evolve, RefusesBadConfigurationsInOneLine) {
       {{{"edge_length", 0.2}}, "found edge_length, which belongs in \"mesh\""},
       {{{"end_time", 1}}, "found end_time, which belongs in \"adaptive\""},
       {{{"constraints", {"area"}}}, "found constraints, which belongs in \"parameters\""},
-      {{{"tangential", "minimal_deformation"}}, "expected it in \"variant\""},
+      {{{"tangential", "minimal_deformation"}}, "expected no key tangential here: \"variant\" has one"},
       {{{"variant", {{"tangential", true}}}}, "expected one of minimal_deformation, none, found boolean"},
       {{{"parameters", {{"tangential", "none"}}}},
        "parameters: found tangential, which belongs in \"variant\""},
