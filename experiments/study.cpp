@@ -119,8 +119,15 @@ class Differences {
   Differences(const std::vector<Row>& rows, const std::string& cells)
       : solutions_(solutions_of(rows, cells)) {}
 
-  /// None when one of the runs is singular or failed.
-  Errors operator()(const std::string& cell, const std::string& finer) const {
+  /// None when one of the runs is singular or failed. Each pair is compared once.
+  const Errors& operator()(const std::string& cell, const std::string& finer) {
+    const auto [known, is_new] = known_.try_emplace({cell, finer});
+    if (is_new) known->second = compared(cell, finer);
+    return known->second;
+  }
+
+ private:
+  Errors compared(const std::string& cell, const std::string& finer) const {
     const auto one = solutions_.find(cell), other = solutions_.find(finer);
     if (one == solutions_.end() || other == solutions_.end()) return {};
     const double t = one->second.t, end = other->second.t;
@@ -131,8 +138,8 @@ class Differences {
     return differences(one->second.functions, other->second.functions);
   }
 
- private:
   std::map<std::string, Solution> solutions_;
+  std::map<std::pair<std::string, std::string>, Errors> known_;
 };
 
 /// Orders in the level or in the step, from the differences of cells that are next to each other in it. Two
@@ -140,7 +147,7 @@ class Differences {
 /// of gradients on meshes that are not nested: the difference is between (1 - 2^-p) e and (1 + 2^-p) e, and
 /// falls with the order p in any case. Differences to the finest cell do not, since its own error is a
 /// growing part of them.
-std::vector<Fit> fits_of_neighbours(const Differences& differences, const std::vector<int>& levels,
+std::vector<Fit> fits_of_neighbours(Differences& differences, const std::vector<int>& levels,
                                     const std::vector<int>& steps, bool in_level, Table table) {
   std::map<std::string, Errors> errors;
   for (std::size_t i = 0; i + in_level < levels.size(); ++i)
@@ -162,7 +169,7 @@ void add_errors_of_finest(const std::string& cells, std::vector<int> levels, std
   const std::string finest = cell_name(levels.back(), steps.back());
   table.parameters["against"] = "finest: " + finest + ", at the end, by closest point";
   table.parameters["orders"] = "of the differences between runs that are next to each other in level or step";
-  const Differences differences(table.rows, cells);
+  Differences differences(table.rows, cells);
   for (Row& row : table.rows) {
     if (row.cell == finest && row.status != "ok")
       warn("the finest run, " + finest + ", is no reference: " + row.status);
