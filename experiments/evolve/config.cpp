@@ -2,6 +2,7 @@
 #include "experiments/evolve/config.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 
 #include "experiments/evolve/formulas.hpp"
@@ -20,6 +21,10 @@
 namespace esfem {
 
 namespace {
+
+const std::set<std::string> adaptive_keys = {"end_time", "tolerance", "first_step", "largest_step"};
+const std::set<std::string> output_keys = {"nodal", "history",    "series", "vtu",
+                                           "every", "every_time", "times",  "checkpoint"};
 
 using nlohmann::json;
 
@@ -45,7 +50,7 @@ AdaptiveSteps adaptive_grid(const JsonReader& whole, const Entry& entry) {
       throw InputError(whole.where() + ": found adaptive and " + key + "; expected one of them");
   }
   const JsonReader reader(whole.object("adaptive"), whole.where() + ": adaptive");
-  reader.accept_only({"end_time", "tolerance", "first_step", "largest_step"});
+  reader.accept_only(adaptive_keys);
   AdaptiveSteps grid;
   const int highest = std::min(2, entry.highest_order);
   grid.order = whole.integer_within("bdf", std::min(highest, standard_order(whole, entry)), 1, highest);
@@ -89,25 +94,17 @@ std::string words_for(const Entry& entry) {
   return entry.problem.empty() ? "flow " + entry.flow : "problem " + entry.problem;
 }
 
-std::set<std::string> names_of(const std::vector<Key>& keys) {
-  std::set<std::string> names;
-  for (const Key& key : keys) names.insert(key.name);
-  return names;
-}
-
 /// Refuses keys that are not known at the top, and says where one of this name belongs.
-void accept_only_known(const JsonReader& reader, const json& given, const std::set<std::string>& known) {
+void accept_only_known(const JsonReader& reader, const std::set<std::string>& known) {
   std::map<std::string, std::set<std::string>> parts = {
-      {"mesh", {"file", "edge_length", "grading", "subdivisions", "remesh", "refine", "curve"}},
-      {"adaptive", {"end_time", "tolerance", "first_step", "largest_step"}},
-      {"output", {"nodal", "history", "series", "vtu", "every", "every_time", "times", "checkpoint"}}};
+      {"mesh", mesh_keys()}, {"adaptive", adaptive_keys}, {"output", output_keys}};
   for (const Entry& entry : entries()) {
     parts["variant"].merge(names_of(entry.variant));
     parts["parameters"].merge(names_of(entry.parameters));
   }
   for (const auto& [part, keys] : parts)
     for (const std::string& key : keys)
-      if (given.contains(key) && known.count(key) == 0)
+      if (reader.has(key) && known.count(key) == 0)
         throw InputError(reader.where() + ": found " + key + ", which belongs in \"" + part + "\"");
   reader.accept_only(known);
 }
@@ -119,14 +116,14 @@ Settings settings(const JsonReader& reader, const std::string& key, const std::v
   const bool takes_any_number = entry.takes_own_parameters && key == "parameters";
   if (!reader.has(key)) return Settings(json::object(), known, where);
   const bool is_variant = key == "variant";
-  for (const Key& other : is_variant ? entry.parameters : entry.variant)
-    if (reader.object(key).contains(other.name) && !takes_any_number &&
-        names_of(known).count(other.name) == 0)
-      throw InputError(where + ": found " + other.name + ", which belongs in \"" +
-                       (is_variant ? "parameters" : "variant") + "\"");
-  if (known.empty() && !takes_any_number) {
-    throw InputError(reader.where() + ": " + words_for(entry) + " has no " +
-                     (key == "variant" ? "variants" : key) + "; expected no key " + key);
+  if (!takes_any_number) {
+    for (const std::string& other : names_of(is_variant ? entry.parameters : entry.variant))
+      if (reader.object(key).contains(other) && names_of(known).count(other) == 0)
+        throw InputError(where + ": found " + other + ", which belongs in \"" +
+                         (is_variant ? "parameters" : "variant") + "\"");
+    if (known.empty())
+      throw InputError(reader.where() + ": " + words_for(entry) + " has no " +
+                       (is_variant ? "variants" : key) + "; expected no key " + key);
   }
   return Settings(reader.object(key), known, where, takes_any_number);
 }
@@ -244,9 +241,7 @@ std::string file_name(const JsonReader& output, const std::string& key) {
 SnapshotPlan snapshot_plan(const JsonReader& output) {
   SnapshotPlan plan;
   plan.pvd = file_name(output, "vtu");
-  const std::string ending = ".pvd";
-  if (!plan.pvd.empty() && (plan.pvd.size() <= ending.size() ||
-                            plan.pvd.compare(plan.pvd.size() - ending.size(), ending.size(), ending) != 0))
+  if (!plan.pvd.empty() && std::filesystem::path(plan.pvd).extension() != ".pvd")
     throw InputError(output.where() + ": found vtu = \"" + plan.pvd +
                      "\"; expected a name that ends in .pvd");
   plan.every = output.integer_within("every", 0, 0, 100000000);
@@ -292,7 +287,7 @@ Keys read_keys(const json& given, const std::string& source) {
                                  "tau",     "steps",      "start",    "quadrature", "variant", "output",
                                  "problem", "parameters", "adaptive", "limits",     "initial", "stop"};
   known.merge(formula_keys());
-  accept_only_known(JsonReader(given, source), given, known);
+  accept_only_known(JsonReader(given, source), known);
   Keys keys{given, read_initial(given, source), {}, {}};
   if (keys.earlier) keys.description.update(keys.earlier->taken_over);
   const JsonReader reader(keys.description, source);
@@ -310,7 +305,7 @@ Keys read_keys(const json& given, const std::string& source) {
   if (reader.has("stop")) read_stop(JsonReader(reader.object("stop"), source + ": stop"), config);
   if (reader.has("output")) {
     const JsonReader output(reader.object("output"), source + ": output");
-    output.accept_only({"nodal", "history", "series", "vtu", "every", "every_time", "times", "checkpoint"});
+    output.accept_only(output_keys);
     config.nodal = file_name(output, "nodal");
     config.series = file_name(output, "series");
     config.checkpoint = file_name(output, "checkpoint");

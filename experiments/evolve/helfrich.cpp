@@ -83,9 +83,8 @@ std::vector<Entry> helfrich_entries() {
   entry.flow = "helfrich";
   entry.help =
       "Helfrich flow by kll21 (3.4)-(3.5): V = Delta H + Q - lambda_A H - lambda_V decreases 1/2 int (H - "
-      "H_0)² and keeps area and volume; to stationary shapes with \"variant\": {\"project\": "
-      "\"coefficients\", "
-      "\"theta\": false, \"relaxation\": 100}";
+      "H_0)² and keeps area and volume; to stationary shapes with \"variant\": "
+      "{\"project\": \"coefficients\", \"theta\": false, \"relaxation\": 100}";
   entry.parameters = {
       {Key::number_or_formula, H_0_key, 0, "H_0, of x, y, z, t; H is 2/R on a sphere"},
       {Key::words_of,

@@ -15,6 +15,10 @@ namespace esfem {
 
 namespace {
 
+/// The keys of "mesh" that say what it is, with those that may stand beside them.
+const std::map<std::string, std::set<std::string>> kinds = {
+    {"file", {"curve", "refine", "remesh"}}, {"edge_length", {"grading"}}, {"subdivisions", {}}};
+
 /// A subdivided icosahedron, as it is on a sphere, stretched for an ellipsoid.
 Mesh subdivided(const Surface& surface, int subdivisions, const std::string& where) {
   if (surface.name == "sphere") return icosphere(surface.parameters.at("radius"), subdivisions);
@@ -31,8 +35,8 @@ Mesh subdivided(const Surface& surface, int subdivisions, const std::string& whe
 /// With edges of one length, or graded by curvature.
 Mesh generated(const Surface& surface, const JsonReader& description) {
   const double edge_length = description.number("edge_length");
-  const double ratio = surface.bounding_radius / edge_length, nodes = 14.5 * ratio * ratio;
-  if (nodes > 3e5 && nodes < 1e8)  // more are refused
+  const double nodes = nodes_at_most(surface, edge_length);
+  if (nodes > 3e5 && nodes <= most_nodes)
     warn(description.where() +
          format(": edge_length = %g on a surface of radius %g makes up to %.1g corners of "
                 "triangles, which takes minutes",
@@ -189,14 +193,18 @@ EvolveMesh mesh_of_file(const JsonReader& description, std::optional<int> degree
 
 }  // namespace
 
-void check_mesh_keys(const JsonReader& description, bool has_surface) {
-  const std::map<std::string, std::set<std::string>> kinds = {
-      {"file", {"curve", "refine", "remesh"}}, {"edge_length", {"grading"}}, {"subdivisions", {}}};
-  std::set<std::string> known, found, taken;
+std::set<std::string> mesh_keys() {
+  std::set<std::string> known;
   for (const auto& [kind, others] : kinds) {
     known.insert(kind);
     known.insert(others.begin(), others.end());
   }
+  return known;
+}
+
+void check_mesh_keys(const JsonReader& description, bool has_surface) {
+  const std::set<std::string> known = mesh_keys();
+  std::set<std::string> found, taken;
   description.accept_only(known);
   for (const auto& [kind, others] : kinds) {
     if (!description.has(kind)) continue;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,9 @@ struct EvolveMesh {
   ReadMesh start;  ///< of degree k, on the surface where there is one; nodal values at its nodes
   std::vector<std::string> remarks;  ///< changes, choices and their consequences
 };
+
+/// All keys of "mesh".
+std::set<std::string> mesh_keys();
 
 /// Throws InputError for the keys of "mesh" that evolve_mesh does not take; has_surface: beside "surface".
 void check_mesh_keys(const JsonReader& description, bool has_surface);

@@ -22,9 +22,8 @@ json number_in(const JsonReader& reader, const Key& key) {
 }
 
 json known_word(const JsonReader& reader, const Key& key) {
-  if (!reader.value(key.name).is_string())
-    reader.wrong_type(key.name, ("one of " + listed({key.words.begin(), key.words.end()})).c_str(),
-                      reader.value(key.name));
+  if (const json& given = reader.value(key.name); !given.is_string())
+    reader.wrong_type(key.name, ("one of " + listed({key.words.begin(), key.words.end()})).c_str(), given);
   const std::string value = reader.text(key.name);
   if (std::find(key.words.begin(), key.words.end(), value) != key.words.end()) return value;
   std::set<std::string> known(key.words.begin(), key.words.end());
@@ -70,11 +69,16 @@ json value_of(const JsonReader& reader, const Key& key) {
 
 }  // namespace
 
+std::set<std::string> names_of(const std::vector<Key>& keys) {
+  std::set<std::string> names;
+  for (const Key& key : keys) names.insert(key.name);
+  return names;
+}
+
 Settings::Settings(const json& given, const std::vector<Key>& keys, const std::string& where,
                    bool takes_any_number) {
   const JsonReader reader(given, where);
-  std::set<std::string> known;
-  for (const Key& key : keys) known.insert(key.name);
+  const std::set<std::string> known = names_of(keys);
   if (!takes_any_number) reader.accept_only(known);
   for (const auto& item : given.items())
     if (known.count(item.key()) == 0) values_[item.key()] = reader.number(item.key());

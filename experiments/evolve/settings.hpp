@@ -3,6 +3,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -65,6 +66,9 @@ class Settings {
   nlohmann::json values_ = nlohmann::json::object();
   std::vector<Key> defaults_;  ///< the keys whose default was taken
 };
+
+/// The names of the keys.
+std::set<std::string> names_of(const std::vector<Key>& keys);
 
 /// Throws InputError, headed by `where`, for one of these keys that is given, since it has no effect, `why`.
 void refuse_given(const Settings& settings, const std::vector<std::string>& keys, const std::string& where,

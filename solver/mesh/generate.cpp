@@ -189,12 +189,9 @@ void check_positive(double edge_length, const Surface& surface) {
         format("%s: edge length %g, expected a positive number", surface.name.c_str(), edge_length));
 }
 
-constexpr double most_nodes = 1e8;
-
 /// Refuses an edge length that is a mistake in the unit, say.
 void check_count(double edge_length, const Surface& surface) {
-  // Equilateral triangles on the bounding sphere, which most surfaces do not fill.
-  const double ratio = surface.bounding_radius / edge_length, nodes = 14.5 * ratio * ratio;
+  const double nodes = nodes_at_most(surface, edge_length);
   if (nodes > most_nodes)
     throw InputError(
         format("%s: edge length %g on a surface of radius %g makes about %.1g nodes; expected at "
@@ -203,6 +200,12 @@ void check_count(double edge_length, const Surface& surface) {
 }
 
 }  // namespace
+
+double nodes_at_most(const Surface& surface, double edge_length) {
+  // Equilateral triangles on the bounding sphere, which most surfaces do not fill.
+  const double ratio = surface.bounding_radius / edge_length;
+  return 14.5 * ratio * ratio;
+}
 
 Mesh generate_mesh(const Surface& surface, double edge_length) {
   check_positive(edge_length, surface);

@@ -7,6 +7,12 @@
 
 namespace esfem {
 
+/// Meshes that would have more are refused.
+constexpr double most_nodes = 1e8;
+
+/// About how many nodes a mesh of degree 1 has with edges of this length, or fewer.
+double nodes_at_most(const Surface& surface, double edge_length);
+
 /// Unstructured quasi-uniform triangulation (degree 1, outward) of a surface whose largest edge is
 /// edge_length within 15%: a Delaunay surface mesh by CGAL, then the force relaxation of DistMesh (Persson &
 /// Strang, SIAM Review 46, 2004) with edge flips and projection onto the surface. Deterministic to the bit.
