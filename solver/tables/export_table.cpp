@@ -151,6 +151,17 @@ std::vector<Block> blocks(const Table& table, Direction direction) {
   return result;
 }
 
+/// Those in which some rows can be compared; h where there are none.
+std::vector<Direction> directions(const Table& table) {
+  std::vector<Direction> result;
+  for (Direction direction : {Direction::tau, Direction::h}) {
+    const std::vector<Block> all = blocks(table, direction);
+    if (std::any_of(all.begin(), all.end(), [](const Block& block) { return block.size() > 1; }))
+      result.push_back(direction);
+  }
+  return result.empty() ? std::vector<Direction>{Direction::h} : result;
+}
+
 /// Experimental order of convergence between neighbouring rows, from the measured h or tau; NaN where there
 /// is none.
 double eoc(const Row& previous, const Row& row, Direction direction, const std::string& quantity,
@@ -266,7 +277,8 @@ std::string to_csv(const Table& table) {
 }
 
 std::string to_latex(const Table& table) {
-  std::string text = "% " + table.experiment + " (" + table.paper + "); needs \\usepackage{booktabs}\n";
+  const std::string paper = table.paper.empty() ? "" : " (" + table.paper + ")";
+  std::string text = "% " + table.experiment + paper + "; needs \\usepackage{booktabs}\n";
   std::set<std::string> norms;
   for (const auto& [quantity, norm] : error_names(table)) norms.insert(norm);
   if (!value_names(table).empty()) text += "\n" + latex_values(table);
@@ -274,7 +286,7 @@ std::string to_latex(const Table& table) {
     std::vector<std::string> quantities;
     for (const auto& name : error_names(table))
       if (name.second == norm) quantities.push_back(name.first);
-    for (Direction direction : {Direction::tau, Direction::h})
+    for (Direction direction : directions(table))
       text += "\n" + latex_table(table, direction, quantities, norm);
   }
   return text;

@@ -11,7 +11,7 @@
 namespace esfem::test_export_table {
 namespace {
 
-using testing::ElementsAre, testing::HasSubstr, testing::Not;
+using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::Not;
 
 Row row(const std::string& cell, int level, double h, double tau, double error) {
   Row row;
@@ -108,6 +108,19 @@ TEST(Latex, RowsWithoutErrorsAreNoBlocks) {
 
 TEST(Latex, OnlyOfWhatIsThere) {
   EXPECT_THAT(to_latex(Table{}), Not(HasSubstr("tabular")));
+}
+
+TEST(Latex, OnlyInWhatChanges) {
+  Table table = sample_table();
+  table.rows = {row("a", 1, 0.5, 0.1, 8e-3), row("b", 2, 0.25, 0.1, 1e-3)};
+  EXPECT_THAT(to_latex(table), AllOf(HasSubstr("orders in $h$"), Not(HasSubstr("orders in $\\tau$"))));
+  table.rows[1] = row("b", 1, 0.5, 0.05, 1e-3);
+  EXPECT_THAT(to_latex(table), AllOf(HasSubstr("orders in $\\tau$"), Not(HasSubstr("orders in $h$"))));
+  table.rows.pop_back();
+  EXPECT_THAT(to_latex(table), HasSubstr("orders in $h$")) << "the errors of one run";
+  EXPECT_THAT(to_latex(table), HasSubstr("% mcf_sphere (kll19); needs"));
+  table.paper = "";
+  EXPECT_THAT(to_latex(table), HasSubstr("% mcf_sphere; needs"));
 }
 
 TEST(Latex, EachVariantHasItsFits) {
