@@ -74,9 +74,8 @@ void ExactFormulas::warn_of_distance(double t, const Field& x) {
   const Distance found = farthest_from(exact_.surface(t), x);
   if (found.value <= h) return;
   largest_distance_.reset();
-  warn(where_ + format(": at t = %g the nodes have left the exact surface: the farthest, at (%g, %g, %g), is "
-                       "at a distance of about %.2g (longest edge: %.2g), and lifted errors mean little",
-                       t, found.at[0], found.at[1], found.at[2], found.value, h));
+  warn(where_ + format(": at t = %g the nodes have left the exact surface: ", t) + distance_text(found, h) +
+       ", and lifted errors mean little");
 }
 
 Field ExactFormulas::columns(const Field& x, const NodalFields& fields) const {

@@ -211,15 +211,17 @@ Distance farthest_from(const Surface& surface, const Field& x) {
   return farthest;
 }
 
+std::string distance_text(const Distance& farthest, double h) {
+  return format("the farthest, at (%g, %g, %g), is at a distance of about %.2g (longest edge: %.2g)",
+                farthest.at[0], farthest.at[1], farthest.at[2], farthest.value, h);
+}
+
 void compare_with_nodes(const Surface& surface, const Mesh& mesh, double t, const std::string& where) {
   const double h = mesh_quality(mesh.elements, mesh.nodes).h;
   const Distance found = farthest_from(surface, mesh.nodes);
   if (found.value <= 1e-3 * h) return;
   const std::string remark =
-      where + format(
-                  ": nodes are not on the level set at t = %g: the farthest, at (%g, %g, %g), is at a "
-                  "distance of about %.2g (longest edge: %.2g)",
-                  t, found.at[0], found.at[1], found.at[2], found.value, h);
+      where + format(": nodes are not on the level set at t = %g: ", t) + distance_text(found, h);
   if (found.value <= h) return warn(remark);
   throw InputError(remark + "; expected zeros of it in the nodes");
 }

@@ -57,6 +57,8 @@ struct Distance {
   Vec3 at;
 };
 Distance farthest_from(const Surface& surface, const Field& x);
+/// "the farthest, at (x, y, z), is at a distance of about ..", compared with the longest edge h.
+std::string distance_text(const Distance& farthest, double h);
 /// Warns, and beyond the longest edge throws InputError, when the nodes are not on a level set that is given
 /// for them at this time.
 void compare_with_nodes(const Surface& surface, const Mesh& mesh, double t, const std::string& where);

@@ -29,12 +29,12 @@ LaggedBlockSolver::LaggedBlockSolver(const SurfaceSpace& space)
     : space_(space), block_(space.pattern()), service_(factorisation_cost) {}
 
 bool LaggedBlockSolver::is_due(double alpha) const {
-  return !(std::abs(alpha_ / alpha - 1) <= largest_change) || service_.is_over();
+  return service_.is_over() || !(std::abs(alpha_ / alpha - 1) <= largest_change);
 }
 
 BlockSolver& LaggedBlockSolver::factorise(double alpha, const Field& x, const SymmetricMatrix& M,
                                           const SymmetricMatrix& A) {
-  alpha_ = 0;
+  service_.end();
   block_.factorise(alpha, 1, 1, M, A);
   alpha_ = alpha;
   x_ = x;
@@ -67,17 +67,20 @@ void LaggedBlockSolver::solve(double alpha, const Field& x, const SymmetricMatri
 }
 
 nlohmann::json LaggedBlockSolver::progress() const {
-  return {{"alpha", alpha_}, {"x", packed(x_)}, {"service", service_.progress()}};
+  return {{"has_factors", service_.serves()},
+          {"alpha", alpha_},
+          {"x", packed(x_)},
+          {"service", service_.progress()}};
 }
 
 void LaggedBlockSolver::resume(const nlohmann::json& saved) {
   const Field x = unpacked(saved.at("x"));
   check_rows(x, space_.dofs());
-  alpha_ = 0;
-  if (const double alpha = saved.at("alpha").get<double>(); alpha > 0) {
+  service_.end();
+  if (saved.at("has_factors").get<bool>()) {
     SymmetricMatrix M = space_.matrix(), A = space_.matrix();
     space_.assemble(x, M, A);
-    factorise(alpha, x, M, A);
+    factorise(saved.at("alpha").get<double>(), x, M, A);
   }
   service_.resume(saved.at("service"));
 }

@@ -52,7 +52,7 @@ class LaggedBlockSolver {
 
   const SurfaceSpace& space_;
   BlockSolver block_;
-  double alpha_ = 0;  ///< of the factors; 0: there are none
+  double alpha_ = 0;  ///< of the factors
   Field x_;           ///< nodes of the factors' matrices
   FactorService service_;
   Field u_, w_;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "solver/disjoint_sets.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
@@ -55,29 +56,15 @@ int SignGrid::euler_characteristic() const {
 }
 
 int SignGrid::components() const {
-  std::vector<bool> reached(is_inside_.size());
-  std::vector<Index> open;
-  int parts = 0;
-  const auto reach = [&](const Index& index) {
-    reached[number(index)] = true;
-    open.push_back(index);
-  };
-  visit([&](const Index& start) {
-    if (reached[number(start)]) return;
-    ++parts;
-    reach(start);
-    while (!open.empty()) {
-      const Index at = open.back();
-      open.pop_back();
-      for (int moved = 1; moved < 8; ++moved)
-        for (int sign : {-1, 1}) {
-          Index next = at;
-          for (int i = 0; i < 3; ++i) next[i] += moved & (1 << i) ? sign : 0;
-          if (contains(next) && !reached[number(next)] && is_inside(next) == is_inside(at)) reach(next);
-        }
+  DisjointSets parts(static_cast<int>(is_inside_.size()));
+  visit([&](const Index& at) {
+    for (int moved = 1; moved < 8; ++moved) {
+      const Index next = {at[0] + (moved & 1), at[1] + (moved >> 1 & 1), at[2] + (moved >> 2)};
+      if (contains(next) && is_inside(next) == is_inside(at))
+        parts.unite(static_cast<int>(number(at)), static_cast<int>(number(next)));
     }
   });
-  return parts - 1;
+  return parts.count() - 1;
 }
 
 /// Whether the cube from a corner on has points inside and outside.

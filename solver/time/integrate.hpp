@@ -351,11 +351,12 @@ struct StepCount {
 /// NumericsErrors (of observers too) are rethrown with step and time; a non-finite value in a new state is
 /// one too. A flow that has settle(past, next) may change both after each step. An observer that returns
 /// false ends the run after this step with a StoppedError. With a checkpoint (none: nullptr) the run resumes
-/// where an earlier one had saved its states (after the starting steps), with the same or a later end, and
-/// observes the steps from there on. The numbers are the same if `step` depends on its arguments alone, or if
-/// the flow's resume(progress()) restores what earlier steps have left in it. The data of observers are saved
-/// in the same way. The checkpoint is saved at intervals, when the run is stopped, and at its end; with
-/// adaptive steps at the last state whose steps do not depend on the end time. A checkpoint serves one run.
+/// where an earlier one had saved its states (after the starting steps), with the same or a later end (given
+/// times: the same), and observes the steps from there on. The numbers are the same if `step` depends on its
+/// arguments alone, or if the flow's resume(progress()) restores what earlier steps have left in it. The data
+/// of observers are saved in the same way. The checkpoint is saved at intervals, when the run is stopped, and
+/// at its end; with adaptive steps at the last state whose steps do not depend on the end time. A checkpoint
+/// serves one run.
 ///
 /// This function leaves in `past` (empty, of capacity states_kept(steps)) the states at the end, also when
 /// the run ends with an error: then those before the step that failed.
