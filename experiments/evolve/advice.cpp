@@ -2,6 +2,7 @@
 #include "experiments/evolve/advice.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "solver/error.hpp"
 #include "solver/geometry/regularity.hpp"
@@ -50,6 +51,15 @@ std::string extinction(double end, const Series& series) {
   const std::vector<double>& area = series.at("area");
   return format("extinct at t = %g: the area has decreased to %g, from %g at the start, and vanishes then",
                 end, area.back(), area.front());
+}
+
+std::string large_step_remark(const EvolveConfig& config, const Series& series) {
+  const std::vector<double>& area = series.at("area");
+  if (config.adaptive || area.size() < 2) return "";
+  const double change = std::abs(area.back() / area[area.size() - 2] - 1);
+  if (change < 0.2) return "";
+  return format("the last step has changed the area by %.0f%%: take smaller ones; if they do not help, ",
+                100 * change);
 }
 
 Key reinitialise_key() {

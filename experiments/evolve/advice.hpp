@@ -30,6 +30,10 @@ std::string sliding_remark(const Series& series);
 /// The message that a surface has become extinct: `end` is the time at which its area, extrapolated, is zero.
 std::string extinction(double end, const Series& series);
 
+/// What comes before other advice when a step, one of equal ones, has changed the area by more than 20%; ""
+/// otherwise.
+std::string large_step_remark(const EvolveConfig& config, const Series& series);
+
 // Advice of the entries when a run has ended at a singularity: keys of the configuration. Flows of mean
 // curvature were tested on 125 closed meshes; each of these runs with one of these flows.
 

@@ -38,7 +38,8 @@ std::string end_of(const EvolveConfig& config, RunRecorder& recorder, const Nume
     if (const std::optional<double> end = extinction_time(recorder.series(), 3))
       return extinction(*end, recorder.series()) + "; the next step: " + error.what();
   }
-  return std::string(error.what()) + "; " + config.entry->cure(config);
+  return std::string(error.what()) + "; " + large_step_remark(config, recorder.series()) +
+         config.entry->cure(config);
 }
 
 /// The status of a run that a signal has stopped.

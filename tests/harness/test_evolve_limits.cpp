@@ -174,6 +174,19 @@ TEST_F(EvolveLimits, ACureIsNamedForEveryFlow) {
   expect(1, "cahn_hilliard", "try smaller steps, or even elements");
 }
 
+TEST_F(EvolveLimits, SmallerStepsComeFirstWhereOneHasChangedMuch) {
+  json ellipsoid = config({{"flow", "mean_curvature"},
+                           {"surface", {{"name", "ellipsoid"}, {"axes", {2, 1, 1}}}},
+                           {"mesh", {{"file", nullptr}, {"edge_length", 0.3}}},
+                           {"degree", 2},
+                           {"bdf", 2},
+                           {"tau", 0.2},
+                           {"steps", 5}});
+  ASSERT_EQ(run(ellipsoid), exit_numerics) << message;
+  EXPECT_THAT(status(), HasSubstr("; the last step has changed the area by 5"));
+  EXPECT_THAT(status(), HasSubstr("%: take smaller ones; if they do not help, try \"variant\""));
+}
+
 TEST_F(EvolveLimits, ASphereThatShrinksToNothingIsExtinct) {
   for (const json& flow :
        {json{{"flow", "dziuk"}}, json{{"flow", "bgn"}}, json{{"flow", "mean_curvature"}},
