@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "experiments/evolve/willmore.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "experiments/evolve/advice.hpp"
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/evolve/start.hpp"
+#include "solver/constants.hpp"
 #include "solver/error.hpp"
 
 namespace esfem {
 namespace {
 
+using nlohmann::json;
 using Variant = WillmoreFlow::Variant;
 
 Variant::Projection projection_of(const Settings& asked) {
@@ -16,13 +21,23 @@ Variant::Projection projection_of(const Settings& asked) {
   return asked.truth("project") ? Variant::after_steps : Variant::none;
 }
 
-Variant willmore_variant(const Settings& asked, const WillmoreProblem& problem) {
+/// What is given, or else the default, as far as the steps admit it (Variant::relaxation).
+double relaxation_of(const Run& run, double otherwise) {
+  const EvolveConfig& config = run.config;
+  if (config.variant.has("relaxation")) return config.variant.number("relaxation");
+  const double rate = otherwise * std::pow(4 * pi / run.space.area(config.mesh.nodes), 2),
+               tau = config.adaptive ? config.adaptive->largest_step : config.grid.tau;
+  return tau > 0 ? std::min(rate, 0.2 / tau) : rate;
+}
+
+Variant willmore_variant(const Run& run, const WillmoreProblem& problem, const WillmoreDefaults& defaults) {
+  const Settings& asked = run.config.variant;
   Variant variant;
   variant.law = problem.law;
   variant.prescribed = problem.prescribed;
   variant.F = asked.is("F", "extrapolated") ? Variant::extrapolated : Variant::implicit;
   variant.projection = projection_of(asked);
-  variant.relaxation = asked.number("relaxation");
+  variant.relaxation = relaxation_of(run, defaults.relaxation);
   variant.reinitialise = asked.number_or("reinitialise", 0);
   if (asked.is("tangential", "minimal_deformation"))
     variant.tangential = MeanCurvatureFlow::Variant::minimal_deformation;
@@ -56,28 +71,41 @@ WillmoreStart willmore_start(const Run& run, const WillmoreProblem& problem) {
              : discrete_willmore_start(run.space, x0, law, prescribed);
 }
 
+Key theta_key(const json& otherwise) {
+  const std::string help = "the correction (3.7)";
+  return {Key::truth, "theta", otherwise,
+          help + (otherwise.is_null() ? "; default: true with a \"surface\", false without" : "")};
+}
+
+Key relaxation_key(double otherwise) {
+  const std::string help = "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau";
+  if (otherwise == 0) return {Key::not_negative, "relaxation", 0, help};
+  return {Key::not_negative, "relaxation", nullptr,
+          format("%s; default: %g (4 pi/area)², or 0.2/tau", help.c_str(), otherwise)};
+}
+
 }  // namespace
 
-Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, bool starts_from_V) {
+Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, bool starts_from_V,
+                     const WillmoreDefaults& defaults) {
   Entry entry;
   entry.fields = "nu, H, V, z";
   entry.variant = {
       word("F", {"extrapolated", "implicit"}, "F(x, u) w of (3.5a)"),
       {Key::truth_or_word,
        "project",
-       true,
+       defaults.project,
        "nu_h to unit length, z_h to the tangent plane, in the nodes: after each step, or in f, g and F alone",
        0,
        {"coefficients"}},
-      {Key::truth, "theta", nullptr, "the correction (3.7); default: true with a \"surface\", false without"},
-      {Key::not_negative, "relaxation", 0,
-       "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau"},
+      theta_key(defaults.theta),
+      relaxation_key(defaults.relaxation),
       tangential_key(),
       reinitialise_key()};
-  entry.run = [problem](const Run& run) {
+  entry.run = [problem, defaults](const Run& run) {
     const WillmoreProblem chosen = problem(run);
     WillmoreStart start = willmore_start(run, chosen);
-    WillmoreFlow flow(run.space, willmore_variant(run.config.variant, chosen), start.theta, limits_of(run));
+    WillmoreFlow flow(run.space, willmore_variant(run, chosen, defaults), start.theta, limits_of(run));
     flow.reinitialise(start.state);
     run_flow(flow, run, start.state);
   };

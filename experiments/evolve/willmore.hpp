@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "experiments/evolve/entry.hpp"
 #include "solver/flows/willmore_flow.hpp"
@@ -15,7 +16,15 @@ struct WillmoreProblem {
   AreaAndVolume prescribed = {};
 };
 
+/// Defaults of "variant".
+struct WillmoreDefaults {
+  nlohmann::json project = true;
+  nlohmann::json theta = nullptr;  ///< null: on with a "surface"
+  double relaxation = 0;           ///< in units of (4 pi/area)², and at most 0.2/tau
+};
+
 /// Everything but name, help, and parameters. Runs start from nu and H, with starts_from_V also from V, z.
-Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, bool starts_from_V = true);
+Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, bool starts_from_V = true,
+                     const WillmoreDefaults& defaults = {});
 
 }  // namespace esfem

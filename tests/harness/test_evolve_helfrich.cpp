@@ -24,6 +24,7 @@ struct EvolveHelfrich : EvolveProgram {
     return result;
   }
   std::vector<double> column(const std::string& name) const { return read_json(series).at(name); }
+  const json as_willmore = {{"project", true}, {"theta", true}, {"relaxation", 0}};
   double change(const std::string& name) const { return column(name).back() / column(name).front() - 1; }
 };
 
@@ -38,13 +39,39 @@ TEST_F(EvolveHelfrich, KeepsWhatItIsToldTo) {
   EXPECT_GT(std::abs(change("area")), 1e-4);
   EXPECT_LT(std::abs(change("volume")), 1e-12);
   EXPECT_EQ(column("lambda_A").back(), 0);
-  ASSERT_EQ(run(flow({{"constraints", json::array()}})), exit_done) << message;
+  ASSERT_EQ(run(flow({{"constraints", json::array()}}, {{"variant", as_willmore}})), exit_done) << message;
   EXPECT_EQ(column("lambda_V").back(), 0);
   const std::vector<double> helfrich = column("willmore_energy");
   json willmore = flow({}, {{"flow", "willmore"}});
   willmore.erase("parameters");
   ASSERT_EQ(run(willmore), exit_done) << message;
   EXPECT_EQ(column("willmore_energy"), helfrich) << "without constraints and H_0 it is Willmore flow";
+}
+
+TEST_F(EvolveHelfrich, BecomesStationaryByDefault) {
+  const json flat = {{"surface", {{"axes", {1.4, 1.2, 0.3355}}}},
+                     {"bdf", nullptr},
+                     {"tau", nullptr},
+                     {"steps", nullptr},
+                     {"adaptive", {{"end_time", 0.6}}}};
+  ASSERT_EQ(run(flow({}, flat)), exit_done) << message;
+  EXPECT_EQ(message.find("differ"), std::string::npos) << message;
+  EXPECT_NEAR(column("helfrich_energy").back() / column("kappa_energy").back(), 1, 0.02);
+  json without = flat;
+  without["variant"] = as_willmore;
+  EXPECT_EQ(run(flow({}, without)), exit_numerics) << message;
+  // In the unit of time of the surface, and as far as the steps admit.
+  ASSERT_EQ(run(flow()), exit_done) << message;
+  const double area = column("area")[0], energy = column("helfrich_energy").back(), pi = std::acos(-1);
+  const auto energy_with = [&](double relaxation, double tau) {
+    EXPECT_EQ(run(flow({}, {{"variant", {{"relaxation", relaxation}}}, {"tau", tau}})), exit_done) << message;
+    return column("helfrich_energy").back();
+  };
+  EXPECT_NEAR(energy_with(100 * std::pow(4 * pi / area, 2), 1e-3), energy, 1e-12);
+  EXPECT_GT(std::abs(energy_with(50, 1e-3) - energy), 1e-6);
+  ASSERT_EQ(run(flow({}, {{"tau", 4e-3}})), exit_done) << message;
+  const double in_large_steps = column("helfrich_energy").back();
+  EXPECT_NEAR(energy_with(50, 4e-3), in_large_steps, 1e-12);
 }
 
 TEST_F(EvolveHelfrich, ReachesAReducedVolume) {
