@@ -142,5 +142,5 @@ def family_html(name, statements, links):
 def _table(rows, short_in_print=False):
     """`short_in_print`: print leaves out what simply holds, and a table in which all of it does."""
     empty = short_in_print and all("settled" in kind for kind, _ in rows)
-    return table(["verdict", "statement", "of what", "expected", "measured"], rows, "claims",
+    return table(["verdict", "statement", "of what", "expected", "measured"], rows, "claims stacked",
                  " ".join(filter(None, ["short" if short_in_print else "", "screen" if empty else ""])))

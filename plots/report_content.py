@@ -98,4 +98,5 @@ BEYOND = (
 )
 
 SYMBOLS = {"nu": "ν", "tau": "τ", "pi": "π", "epsilon": "ε", "theta": "ϑ", "alpha": "α", "beta": "β", "gamma": "γ",
-           "lambda": "λ", "Gamma": "Γ", "Delta": "Δ", "kappa": "κ", "infinity": "∞", "grad": "∇", "sigma": "σ", "delta": "δ"}
+           "lambda": "λ", "Gamma": "Γ", "Delta": "Δ", "kappa": "κ", "infinity": "∞", "grad": "∇", "sigma": "σ", "delta": "δ",
+           "rho": "ρ"}

@@ -16,7 +16,7 @@ def text(words):
     """A sentence of a claim as HTML: Greek letters by name, h^2, H1, x1, x_h and >= become signs."""
     escaped = html.escape(words, quote=False)
     escaped = escaped.replace("-&gt;", "→").replace("+-", "±").replace("&gt;=", "≥").replace("&lt;=", "≤")
-    escaped = re.sub(r"\b(" + "|".join(SYMBOLS) + r")(?=\b|_|\d)", lambda match: SYMBOLS[match[1]], escaped)
+    escaped = re.sub(r"\b(" + "|".join(SYMBOLS) + r")(?=\b|[_²³⁴]|\d)", lambda match: SYMBOLS[match[1]], escaped)
     escaped = re.sub(r"\b([HL])([12])\b", r"\1<sup>\2</sup>", escaped)
     escaped = re.sub(r"\bx([123])\b", r"x<sub>\1</sub>", escaped)
     escaped = re.sub(r"\^(\([^()]*\)|-?\d+\.\d+|-?[\w∞]+)", lambda match: f"<sup>{match[1].strip('()')}</sup>", escaped)

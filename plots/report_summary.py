@@ -48,7 +48,7 @@ def figures_table(paper, placed):
         said = tag("div", tally, class_="place") if tally else ""
         rows.append([link(f"{paper.key}-{figure.number}", figure.number), text(figure.caption) + " " + text(figure.found),
                      (badge(name) if name else "no statement") + said])
-    return table(["figure", "what it shows, and what the runs say", "verdict"], rows, "figures")
+    return table(["figure", "what it shows, and what the runs say", "verdict"], rows, "figures stacked")
 
 
 def differences_table(statements, links):
@@ -63,7 +63,7 @@ def differences_table(statements, links):
             count = f"and {len(group) - SHOWN} more"
             words += tag("details", tag("summary", count) + more, class_="place screen") + tag("div", count, class_="place print")
         rows.append([badge(name), words, links.remark(group[0].stem, why) or text(UNTOLD if len(group) > 1 else group[0].worst["reason"])])
-    return table(["verdict", "statement", "why"], rows, "exceptions") if rows else tag("p", "Nothing.")
+    return table(["verdict", "statement", "why"], rows, "exceptions stacked") if rows else tag("p", "Nothing.")
 
 
 def paper_summary(paper, placed, links):

@@ -96,6 +96,8 @@ class Site:
         made = re.sub(r'(href|src)="([^"]*)"', lambda match: f'{match[1]}="{html.escape(self.link(path, html.unescape(match[2])))}"', made)
         made = made.replace("<td><code>", '<td class="code"><code>')  # names in a column, not words of a sentence
         made = re.sub(r"<table>.*?</table>", lambda match: tag("div", match[0], class_="scroll"), made, flags=re.DOTALL)
+        for head, kind in (("figure", "figures stacked"), ("verdict", "stacked")):
+            made = re.sub(rf"<table>(?=\s*<thead>\s*<tr>\s*<th[^>]*>{head}</th>)", f'<table class="{kind}">', made)
         title = re.search(r"<h1[^>]*>(.*?)</h1>", made)
         return self.page(self.place(path), "esfem" if path == "README.md" else f"esfem: {re.sub('<[^>]*>', '', title[1] if title else path)}", made)
 

@@ -45,6 +45,7 @@ class Words(unittest.TestCase):
         self.assertEqual(text("O(tau^3) for |nu_h| >= 1 & h^2"),
                          "O(τ<sup>3</sup>) for |ν<sub>h</sub>| ≥ 1 &amp; h<sup>2</sup>")
         self.assertEqual(text("small_ellipsoid, (3.4) of number"), "small_ellipsoid, (3.4) of number")
+        self.assertEqual(text("4 pi², rho² - 1, pipe"), "4 π², ρ² - 1, pipe")
         self.assertEqual(text("Gamma_h, order q <= 5"), "Γ<sub>h</sub>, order q ≤ 5")
         self.assertEqual(text("h^1.5. R³ = R_0³, h^(k+1), 10^-4."),
                          "h<sup>1.5</sup>. R³ = R<sub>0</sub>³, h<sup>k+1</sup>, 10<sup>-4</sup>.")

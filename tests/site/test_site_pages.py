@@ -47,7 +47,7 @@ class Pages(unittest.TestCase):
         self.folder = folder.name
         self.write("README.md", README)
         self.write("docs/README.md", "# Docs\n\n[home](../README.md)\n")
-        self.write("docs/own.md", "# Own\n\n## A b\n\n[back](../README.md)\n")
+        self.write("docs/own.md", "# Own\n\n## A b\n\n[back](../README.md)\n\n| verdict | statement |\n|---|---|\n| holds | a |\n")
         for name in ("docs/own_problems.md", "docs/flows.md", "solver/x.hpp", "reference/a.json"):
             self.write(name, "# x\n")
         figure = Figure(figsize=(2, 1))
@@ -76,6 +76,7 @@ class Pages(unittest.TestCase):
         for link in ('href="docs/own.html#a-b"', 'href="solver/x.hpp.txt"', 'href="reference/index.html"', 'href="reference/a.json"'):
             self.assertIn(link, page)
         self.assertIn('<div class="scroll"><table>', page)
+        self.assertIn('<table class="stacked">', self.read("docs/own.html"))
         self.assertIn('<td class="code"><code>', page)
         self.assertNotIn("report/index.html", page, "what is not there has no link")
         self.assertIn("figures/kll19/fig13_1.pdf", self.read("gallery.html"))
