@@ -20,7 +20,7 @@ import sys
 from report_claims import Links, anchor
 from report_content import PAPERS
 from report_data import BEYOND_STEMS, OWN, differences, figure_verdict, of_section, place, read_results, verdict
-from report_html import text
+from report_html import measured_words, text
 from report_summary import DOI, UNTOLD
 from report_tables import order_words
 from table import TableError
@@ -29,6 +29,9 @@ FOLDER = os.path.join(os.path.dirname(os.path.abspath(__file__)), "findings")
 REFERENCE = "reference"
 MADE = "<!-- written by `make findings`; its text is plots/findings/{}.md -->"
 SHOWN = 4
+# A number of a remark that a run could have measured: no count of nodes, no percentage, no part of a name or a formula.
+MEASURED = re.compile(r"(?<![\w.^§(/])\d+(?:\.\d+)?(?:e-?\d+)?(?![\w%]|\.\d| nodes| degrees)")
+NEAR = 0.15
 
 
 def digest(path):
@@ -100,7 +103,12 @@ def arrow(words):
 
 def cell(words):
     """A sentence of a claim for a table in Markdown."""
-    return text(words).replace("|", "&#124;").replace("*", "&#42;")
+    return escaped(text(words))
+
+
+def escaped(made):
+    """HTML for a cell of a table in Markdown."""
+    return made.replace("|", "&#124;").replace("*", "&#42;")
 
 
 class Remarks:
@@ -136,7 +144,7 @@ def table(heads, rows):
 def check(stem, claim, remarks, page):
     """What was measured, and the remark, of one check, with its name, to which remarks lead."""
     remark = f": {remarks.cell(stem, claim['remark'], page)}" if claim["remark"] else ""
-    return f'<a id="{anchor(stem, claim["id"])}"></a>`{claim["id"]}` {cell(claim["measured"])}{remark}'
+    return f'<a id="{anchor(stem, claim["id"])}"></a>`{claim["id"]}` {escaped(measured_words(claim["measured"]))}{remark}'
 
 
 def statement_row(statement, remarks, page):
@@ -191,7 +199,7 @@ def provenance(results, stems):
     def values(key, short=None):
         found = [value for origin in origins for value in (origin.get(key) if isinstance(origin.get(key), list) else [origin.get(key)])]
         return ", ".join(sorted({str(value)[:short] for value in found if value}))
-    return (f"*Tables of {values('date', 10)}, version {values('version')}, commits {values('git', 10)}, {values('compiler')}, "
+    return (f"*Tables of {values('date', 10)}, version {values('version')}, commit {values('git', 10)}, {values('compiler')}, "
             f"{values('cpu')}. The report has all checks and all orders: `make report`.*")
 
 
@@ -231,6 +239,44 @@ def names():
     return sorted(os.path.splitext(os.path.basename(path))[0] for path in glob.glob(f"{FOLDER}/*.md"))
 
 
+def numbers_in(words):
+    """(value, half a unit of its last digit) of the numbers of a sentence that could be measured ones."""
+    for match in MEASURED.finditer(words):
+        mantissa, _, exponent = match[0].partition("e")
+        whole, _, decimals = mantissa.partition(".")
+        zeros = 0 if decimals else len(whole) - len(whole.rstrip("0"))
+        yield float(match[0]), 0.5 * 10.0 ** (int(exponent or 0) - len(decimals) + zeros)
+
+
+def is_of_earlier_runs(claim):
+    """Whether numbers of a remark are near what was measured, but none is it: they were measured in earlier runs."""
+    number = MEASURED.match(claim["measured"].lstrip("-"))
+    if not number or float(number[0]) == 0:
+        return False
+    measured, bounds = float(number[0]), {value for value, _ in numbers_in(claim["expected"])}
+    near = [(value, half) for value, half in numbers_in(claim["remark"]) if abs(value - measured) <= NEAR * measured and value not in bounds]
+    return bool(near) and all(abs(value - measured) > 1.001 * half for value, half in near)
+
+
+def outdated_remarks(results, allowed):
+    """A line for each remark with numbers of earlier runs; `allowed`: words of remarks, by file, with others that are meant."""
+    return [f"{REFERENCE}/{statement.stem}.json: {claim['id']}: measured {claim['measured']}, but: {claim['remark']}"
+            for statement in results.statements for claim in statement.claims
+            if is_of_earlier_runs(claim) and not any(words in claim["remark"] for words in allowed.get(f"{REFERENCE}/{statement.stem}.json", []))]
+
+
+def allowed_numbers():
+    """{file: words around a number that may be typed}."""
+    words = {}
+    with open(f"{os.path.dirname(FOLDER)}/typed_numbers.txt", encoding="utf-8") as file:
+        for line in file:
+            if line.strip() and not line.startswith("#"):
+                name, what, why = line.split(": ", 2)
+                assert why.strip(), line
+                words.setdefault(name, []).append(what)
+    return words
+
+
 def outdated(docs):
     """What is wrong with the pages that are there, a line each."""
     wrong = []
@@ -251,6 +297,9 @@ def outdated(docs):
 
 def write_all(verdicts, docs):
     results = read_results(verdicts, REFERENCE)
+    wrong = outdated_remarks(results, allowed_numbers())
+    if wrong:
+        raise TableError("remarks with numbers of earlier runs; correct them, or say in plots/typed_numbers.txt what they are:\n" + "\n".join(wrong))
     placed = place(results)
     remarks = Remarks(placed, results)
     os.makedirs(f"{docs}/findings", exist_ok=True)

@@ -4,7 +4,7 @@ import html
 import re
 
 from report_data import Statement, verdict
-from report_html import link, table, tag, text
+from report_html import link, measured_words, table, tag, text
 
 CLASSES = {"reproduced": "reproduced", "reproduced, but": "but", "corrected": "corrected", "not reproduced": "not",
            "cannot be told": "untold", "claim not met": "open", "holds": "holds"}
@@ -91,7 +91,7 @@ def claim_rows(statement, links):
         kinds = ("" if last else "more", "settled" if settled else "")
         rows.append((" ".join(filter(None, kinds)),
                      ["" if verdict(claim) == before else badge(verdict(claim)), (words if first else "") + remark + reason,
-                      _what(claim, target) + links.caught(statement.stem, claim["id"]), text(claim["expected"]), text(claim["measured"])]))
+                      _what(claim, target) + links.caught(statement.stem, claim["id"]), text(claim["expected"]), measured_words(claim["measured"])]))
         before = verdict(claim)
     return rows
 

@@ -63,7 +63,7 @@ PAPERS = (
           "Numer. Math. 151 (2022)", "10.1007/s00211-022-01280-5",
           "Cahn–Hilliard equations on a surface with given motion, (8.3), with initial values (3.13).",
           (Figure("bk22/fig2", "2", "cahn_hilliard_ellipsoid", "BDF1: errors over the mesh width, in the paper's setting and from Ritz maps with ϑ.",
-                  "The stated orders are seen; the better ones that the paper observes are those of nodal norms."),
+                  "The stated order in H1 is seen, that in L2 cannot be told; the better ones that the paper observes are those of nodal norms."),
            Figure("bk22/fig3", "3", "cahn_hilliard_ellipsoid", "BDF1: the same over the step size.",
                   "The order in time is seen."),
            Figure("bk22/fig4", "4", "cahn_hilliard_ellipsoid", "BDF3: errors over the mesh width, in the paper's setting and from Ritz maps with ϑ.",
@@ -99,4 +99,4 @@ BEYOND = (
 
 SYMBOLS = {"nu": "ν", "tau": "τ", "pi": "π", "epsilon": "ε", "theta": "ϑ", "alpha": "α", "beta": "β", "gamma": "γ",
            "lambda": "λ", "Gamma": "Γ", "Delta": "Δ", "kappa": "κ", "infinity": "∞", "grad": "∇", "sigma": "σ", "delta": "δ",
-           "rho": "ρ"}
+           "rho": "ρ", "zeta": "ζ"}

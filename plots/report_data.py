@@ -183,7 +183,7 @@ def figure_verdict(statements):
     found = {name: number for name, number in published.items() if number}
     if not found:
         return "", ""
-    tally = ", ".join(f"{number} {name}" for name, number in sorted(found.items(), key=lambda item: -SEVERITY.index(item[0])))
+    tally = "; ".join(f"{number} {name}" for name, number in sorted(found.items(), key=lambda item: -SEVERITY.index(item[0])))
     if "claim not met" in found:
         return "claim not met", tally
     told = {name for name in found if name != "cannot be told"} or set(found)

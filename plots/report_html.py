@@ -19,8 +19,23 @@ def text(words):
     escaped = re.sub(r"\b(" + "|".join(SYMBOLS) + r")(?=\b|[_²³⁴]|\d)", lambda match: SYMBOLS[match[1]], escaped)
     escaped = re.sub(r"\b([HL])([12])\b", r"\1<sup>\2</sup>", escaped)
     escaped = re.sub(r"\bx([123])\b", r"x<sub>\1</sub>", escaped)
-    escaped = re.sub(r"\^(\([^()]*\)|-?\d+\.\d+|-?[\w∞]+)", lambda match: f"<sup>{match[1].strip('()')}</sup>", escaped)
-    return re.sub(r"(?<=[A-Za-zͰ-Ͽ|])_([a-zA-Z0-9]{1,2})(?![a-zA-Z0-9_])", r"<sub>\1</sub>", escaped)
+    escaped = re.sub(r"\^(\([^()]*\)|-?\d+\.\.?\d+|-?[\w∞]+)", lambda match: f"<sup>{match[1].strip('()')}</sup>", escaped)
+    escaped = re.sub(r"(?<=[A-Za-zͰ-Ͽ|])_([a-zA-Z0-9]{1,2})(?![a-zA-Z0-9_])", r"<sub>\1</sub>", escaped)
+    escaped = re.sub(r"(?<![\w.])(\d+(?:\.\d+)?)e([-+]?)0*(\d*)\b", power_of_ten, escaped)
+    escaped = re.sub(r"(?<=Cahn|burg)-(?=Hilliard|Landau)|(?<=\d\))-(?=\(\d)", "–", escaped)
+    return re.sub(r"(?<![\w)/<-])-(?=\d)", "−", escaped)
+
+
+def measured_words(words):
+    """What was measured, as HTML; "-" is an order that the errors do not determine."""
+    return "no order" if words == "-" else text(words)
+
+
+def power_of_ten(match):
+    """2.5e-03 as 2.5·10⁻³, 2.5e+00 as 2.5."""
+    mantissa, sign, exponent = match.groups()
+    minus = "−" if sign == "-" else ""
+    return f"{mantissa}·10<sup>{minus}{exponent}</sup>" if exponent else mantissa
 
 
 def number(value):

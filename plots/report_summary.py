@@ -10,7 +10,7 @@ from report_html import link, table, tag, text
 PUBLISHED = ("reproduced", "reproduced, but", "cannot be told", "corrected", "not reproduced", "claim not met")
 DOI = "https://doi.org/"
 SHOWN = 4  # statements that one entry lists by name
-UNTOLD = "the interval of the order contains the bound, or there is none"
+UNTOLD = "the interval of the order contains the bound, or the order has no interval"
 
 
 def source(paper):

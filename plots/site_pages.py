@@ -49,7 +49,8 @@ class Site:
     def page(self, path, title, body):
         """An HTML page at `path` below the output."""
         up = "../" * path.count("/")
-        links = "".join(tag("a", words, href=up + target, **({"aria_current": "page"} if target == path else {}))
+        current = path if path in dict(self.navigation) or not path.startswith("docs/") else "docs/index.html"
+        links = "".join(tag("a", words, href=up + target, **({"aria_current": "page"} if target == current else {}))
                         for target, words in self.navigation).replace("aria_current", "aria-current")
         self.write(path, (
             '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
@@ -98,6 +99,7 @@ class Site:
         made = re.sub(r"<table>.*?</table>", lambda match: tag("div", match[0], class_="scroll"), made, flags=re.DOTALL)
         for head, kind in (("figure", "figures stacked"), ("verdict", "stacked")):
             made = re.sub(rf"<table>(?=\s*<thead>\s*<tr>\s*<th[^>]*>{head}</th>)", f'<table class="{kind}">', made)
+        made = re.sub(r'(?<!">)(<img [^>]*src="([^"]*)"[^>]*>)', r'<a href="\2">\1</a>', made)  # at its full size
         title = re.search(r"<h1[^>]*>(.*?)</h1>", made)
         return self.page(self.place(path), "esfem" if path == "README.md" else f"esfem: {re.sub('<[^>]*>', '', title[1] if title else path)}", made)
 

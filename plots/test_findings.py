@@ -37,17 +37,6 @@ def typed_numbers(words):
     return [words[max(0, match.start() - 60):match.end() + 20] for match in NUMBERS.finditer(words)]
 
 
-def allowed():
-    """{page: words that a line may have}, of typed_numbers.txt."""
-    words = {}
-    for line in read("plots/typed_numbers.txt").splitlines():
-        if line.strip() and not line.startswith("#"):
-            page, what, why = line.split(": ", 2)
-            assert why.strip(), line
-            words.setdefault(page, []).append(what)
-    return words
-
-
 class Pages(unittest.TestCase):
     def setUp(self):
         self.before = os.getcwd()
@@ -58,7 +47,7 @@ class Pages(unittest.TestCase):
         self.assertEqual(findings.outdated("docs"), [])
 
     def test_no_number_is_typed_that_a_result_could_contradict(self):
-        words = allowed()
+        words = findings.allowed_numbers()
         for page in pages():
             for around in typed_numbers(read(page)):
                 self.assertTrue(any(what == "*" or what in around for what in words.get(page, [])),
@@ -66,7 +55,7 @@ class Pages(unittest.TestCase):
                                 "plots/typed_numbers.txt why not")
 
     def test_the_numbers_that_are_allowed_are_there(self):
-        for page, words in allowed().items():
+        for page, words in findings.allowed_numbers().items():
             for what in words:
                 self.assertTrue(what == "*" or what in " ".join(CODE.sub("", read(page)).split()), f"typed_numbers.txt: {page} has no {what}")
 
@@ -98,6 +87,18 @@ class Pages(unittest.TestCase):
 
     def test_the_readme_is_short(self):
         self.assertLessEqual(read("README.md").count("\n"), 130)
+
+
+class Remarks(unittest.TestCase):
+    def test_numbers_of_earlier_runs_are_found(self):
+        for measured, remark in (("2.83", "order 2.9"), ("5.748e-01", "0.58 at the end"), ("404.247", "to 1.1%: 407.9"), ("-0.0157", "-1.5e-2")):
+            self.assertTrue(findings.is_of_earlier_runs(claim("a", measured=measured, remark=remark)), remark)
+        for measured, remark in (("2.83", "order 2.8, and 2.9 with BDF4"), ("397.879", "400 times as far"), ("0.082574", "the bound 0.083"),
+                                 ("2.83", "with 3 curves"), ("10.2", "on 11 nodes, 9%"), ("-", "2.9"), ("2.83", "")):
+            self.assertFalse(findings.is_of_earlier_runs(claim("a", measured=measured, remark=remark, expected=">= 0.08, <= 0.083")), remark)
+        results = Results(statements=[Statement("mcf_sphere", [claim("a", measured="2.83", remark="order 2.9 by theory")])])
+        self.assertEqual(len(findings.outdated_remarks(results, {})), 1)
+        self.assertEqual(findings.outdated_remarks(results, {"reference/mcf_sphere.json": ["2.9 by theory"]}), [])
 
 
 class Numbers(unittest.TestCase):

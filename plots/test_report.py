@@ -48,7 +48,9 @@ class Words(unittest.TestCase):
         self.assertEqual(text("4 pi², rho² - 1, pipe"), "4 π², ρ² - 1, pipe")
         self.assertEqual(text("Gamma_h, order q <= 5"), "Γ<sub>h</sub>, order q ≤ 5")
         self.assertEqual(text("h^1.5. R³ = R_0³, h^(k+1), 10^-4."),
-                         "h<sup>1.5</sup>. R³ = R<sub>0</sub>³, h<sup>k+1</sup>, 10<sup>-4</sup>.")
+                         "h<sup>1.5</sup>. R³ = R<sub>0</sub>³, h<sup>k+1</sup>, 10<sup>−4</sup>.")
+        self.assertEqual(text("1.6e-03, 5.8e+00, -0.9, (3.4)-(3.5), Cahn-Hilliard, x-order-h-2, O(tau^1..5)"),
+                         "1.6·10<sup>−3</sup>, 5.8, −0.9, (3.4)–(3.5), Cahn–Hilliard, x-order-h-2, O(τ<sup>1..5</sup>)")
         self.assertEqual(text("x1 in H1 and L2"), "x<sub>1</sub> in H<sup>1</sup> and L<sup>2</sup>")
 
     def test_verdicts(self):
