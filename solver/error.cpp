@@ -26,6 +26,10 @@ SingularityError SingularityError::at(int step, double t) const {
   return SingularityError(format("singular at t = %g (step %d): %s", t, step, what()));
 }
 
+ToleranceError ToleranceError::at(int step, double t) const {
+  return ToleranceError(NumericsError::at(step, t).what());
+}
+
 ExtinctionError ExtinctionError::at(int step, double t) const {
   return ExtinctionError(format("%s (step %d, t = %g)", what(), step, t));
 }

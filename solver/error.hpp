@@ -29,6 +29,12 @@ struct SingularityError : NumericsError {
   SingularityError at(int step, double t) const;  ///< "singular at t = .. (step ..): .."
 };
 
+/// An adaptive step is not accurate enough, even the smallest.
+struct ToleranceError : NumericsError {
+  using NumericsError::NumericsError;
+  ToleranceError at(int step, double t) const;  ///< the same with step and time in front
+};
+
 /// The surface shrinks to a point: earlier results are valid, and there is no solution afterwards.
 struct ExtinctionError : NumericsError {
   using NumericsError::NumericsError;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/analysis/diagnostics.hpp"
 #include "solver/error.hpp"
 #include "solver/geometry/regularity.hpp"
 
@@ -53,9 +54,30 @@ std::string extinction(double end, const Series& series) {
                 end, area.back(), area.front());
 }
 
+std::string mesh_failure_remark(const EvolveConfig& config, const Series& series) {
+  if (!config.entry->evolves_curvature && !config.entry->is_mean_curvature_flow) return "";
+  const auto max_H = series.find("max_H");
+  if (max_H == series.end() || max_H->second.size() < 2) return "";
+  const double first = max_H->second.front(), last = max_H->second.back();
+  if (!(last < 2.5 * first)) return "";
+  return format(
+      "max |H| has hardly grown (%.3g at the start, %.3g now), so this may be a failure of the mesh, and not "
+      "a "
+      "singularity of the surface; ",
+      first, last);
+}
+
 std::string large_step_remark(const EvolveConfig& config, const Series& series) {
   const std::vector<double>& area = series.at("area");
-  if (config.adaptive || area.size() < 2) return "";
+  if (config.adaptive) return "";
+  if (config.entry->is_mean_curvature_flow) {
+    const double left = latest_end_of_mean_curvature_flow(series) - series.at("t").back();
+    if (config.grid.tau > 0.1 * left)
+      return format(
+          "the surface exists for %.2g at most, and tau is %.2g: take smaller steps; if they do not help, ",
+          left, config.grid.tau);
+  }
+  if (area.size() < 2) return "";
   const double change = std::abs(area.back() / area[area.size() - 2] - 1);
   if (change < 0.2) return "";
   return format("the last step has changed the area by %.0f%%: take smaller ones; if they do not help, ",

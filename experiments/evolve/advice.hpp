@@ -30,8 +30,12 @@ std::string sliding_remark(const Series& series);
 /// The message that a surface has become extinct: `end` is the time at which its area, extrapolated, is zero.
 std::string extinction(double end, const Series& series);
 
-/// What comes before other advice when a step, one of equal ones, has changed the area by more than 20%; ""
+/// Where a flow of curvature ends although its curvature has hardly grown: that the mesh may have failed, ""
 /// otherwise.
+std::string mesh_failure_remark(const EvolveConfig& config, const Series& series);
+
+/// What comes before other advice when a step, one of equal ones, has changed the area by more than 20%, or
+/// one is longer than a tenth of what is left of mean curvature flow at most; "" otherwise.
 std::string large_step_remark(const EvolveConfig& config, const Series& series);
 
 // Advice of the entries when a run has ended at a singularity: keys of the configuration. Flows of mean

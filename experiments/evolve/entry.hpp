@@ -66,8 +66,7 @@ struct Entry {
   bool lumps_linear_elements = false;   ///< takes the vertices as quadrature points by default
 
   /// Advice when nu and H deviate from the surface, and when a run has ended at a singularity.
-  std::string curvature_cure = "";
-  std::function<std::string(const EvolveConfig&)> cure = {};
+  std::function<std::string(const EvolveConfig&)> curvature_cure = {}, cure = {};
 };
 
 /// All entries; those of a flow are adjacent, and the first is its default problem.

@@ -146,6 +146,8 @@ std::string summary(const Run& run, double seconds) {
   list(config.snapshots.pvd, format(" (%zu snapshots)", run.recorder.snapshots().size()));
   if (has_checkpoint(config)) list(config.checkpoint);
   const int steps = run.recorder.newest().step;
+  if (steps == 0 && !config.adaptive && config.grid.steps == 0)
+    files += " (no step was asked for: \"steps\" is 0)";
   return format("%d step%s to t = %g in %s; ", steps, steps == 1 ? "" : "s", run.recorder.newest().t,
                 duration_text(seconds).c_str()) +
          change("area") + ", " + change("volume") + (files.empty() ? "" : "; written: " + files);

@@ -16,7 +16,7 @@ const char* const H_0_key = "spontaneous_curvature";
 
 /// With those of Willmore flow a red blood cell breaks at t = 0.26: nu_h and H_h leave the surface, and
 /// theta, that of the initial shape, moves each other stationary one.
-const WillmoreDefaults for_stationary_shapes = {"coefficients", false, 100};
+const WillmoreDefaults for_stationary_shapes = {"coefficients", false, nullptr};
 
 Formula spontaneous_curvature(const EvolveConfig& config) {
   return {config.parameters.text(H_0_key), names_in_space_time(names_of(config)),
@@ -71,6 +71,7 @@ void check_helfrich(const EvolveConfig& config, const std::string& source) {
 }  // namespace
 
 void record_more(const Run& run, const WillmoreFlow::State& state) {
+  look_at_steps(run, state);
   if (!run.config.parameters.has(H_0_key)) return;
   Series& series = run.recorder.series();
   const Field H_0 =
@@ -85,6 +86,10 @@ void record_more(const Run& run, const WillmoreFlow::State& state) {
 std::vector<Entry> helfrich_entries() {
   Entry entry = willmore_entry(helfrich_problem, false, for_stationary_shapes);
   entry.flow = "helfrich";
+  entry.energy = "helfrich_energy";
+  entry.order = entry.order_on_files = 2;
+  for (Key& key : entry.variant)
+    if (key.name == "tangential") key.help += "; with \"constraints\": []";
   entry.help =
       "Helfrich flow by kll21 (3.4)-(3.5): V = Delta H + Q - lambda_A H - lambda_V decreases 1/2 int (H - "
       "H_0)² and keeps area and volume";

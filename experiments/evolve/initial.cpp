@@ -180,7 +180,11 @@ std::optional<Initial> read_initial(const json& description, const std::string& 
   if (whole.has("mesh") && !has_file) return {};
   if (whole.has("mesh")) throw InputError(whole.where() + ": found initial and mesh; expected one of them");
   const JsonReader asked(whole.object("initial"), whole.where() + ": initial");
-  asked.accept_only({"file", "time"});
+  for (const auto& item : whole.object("initial").items())
+    if (item.key() != "file" && item.key() != "time")
+      throw InputError(asked.where() + ": found " + item.key() +
+                       " beside file, which gives all values; for formulas on the nodes of a file expected "
+                       "\"mesh\": {\"file\": ..}, and \"initial\" without file");
   const std::string file = asked.text("file");
   const bool is_json = std::filesystem::path(file).extension() == ".json";
   Initial initial = is_json ? from_nodal_output(description, whole, file) : from_mesh_file(whole, file);

@@ -60,8 +60,9 @@ std::vector<Entry> mean_curvature_entries() {
   entry.starts = {{"nu", "H"}};
   entry.energy = "area";
   entry.evolves_curvature = entry.can_shrink_to_nothing = entry.is_mean_curvature_flow = true;
-  entry.curvature_cure =
-      "try \"variant\": {\"reinitialise\": 0.05}, \"flow\": \"dziuk\", or " + resolving_mesh;
+  entry.curvature_cure = [](const EvolveConfig&) {
+    return "try \"variant\": {\"reinitialise\": 0.05}, \"flow\": \"dziuk\", or " + resolving_mesh;
+  };
   entry.cure = mean_curvature_cure;
   return {entry};
 }

@@ -38,7 +38,13 @@ std::string end_of(const EvolveConfig& config, RunRecorder& recorder, const Nume
     if (const std::optional<double> end = extinction_time(recorder.series(), 3))
       return extinction(*end, recorder.series()) + "; the next step: " + error.what();
   }
-  return std::string(error.what()) + "; " + large_step_remark(config, recorder.series()) +
+  if (dynamic_cast<const ToleranceError*>(&error))
+    return std::string(error.what()) +
+           format("; try a larger tolerance, or a smaller first_step, such as %.2g",
+                  config.adaptive->first_step / 100);
+  const std::string large_step = large_step_remark(config, recorder.series());
+  return std::string(error.what()) + "; " +
+         (large_step.empty() ? mesh_failure_remark(config, recorder.series()) : large_step) +
          config.entry->cure(config);
 }
 

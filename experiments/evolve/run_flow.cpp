@@ -48,7 +48,7 @@ void compare_curvature(const Run& run) {
   const auto found = run.recorder.compare_curvature();
   if (!found || !have_parted(run.config, *found)) return;
   run.outcome.remark = curvature_remark(*found, run.recorder.newest().t);
-  warn(run.outcome.remark + "; " + run.config.entry->curvature_cure);
+  warn(run.outcome.remark + "; " + run.config.entry->curvature_cure(run.config));
 }
 
 namespace {

@@ -7,8 +7,11 @@
 #include "experiments/evolve/advice.hpp"
 #include "experiments/evolve/run_flow.hpp"
 #include "experiments/evolve/start.hpp"
+#include "experiments/harness/warn.hpp"
+#include "solver/assembly/size.hpp"
 #include "solver/constants.hpp"
 #include "solver/error.hpp"
+#include "solver/flows/extrapolation.hpp"
 
 namespace esfem {
 namespace {
@@ -21,23 +24,46 @@ Variant::Projection projection_of(const Settings& asked) {
   return asked.truth("project") ? Variant::after_steps : Variant::none;
 }
 
-/// What is given, or else the default, as far as the steps admit it (Variant::relaxation).
-double relaxation_of(const Run& run, double otherwise) {
-  const EvolveConfig& config = run.config;
-  if (config.variant.has("relaxation")) return config.variant.number("relaxation");
-  const double rate = otherwise * std::pow(4 * pi / run.space.area(config.mesh.nodes), 2),
+/// 100 in units of the surface's time scale, or the largest rate that the steps admit (Variant::relaxation).
+double suitable_relaxation(const EvolveConfig& config, double area) {
+  const double rate = 100 * std::pow(4 * pi / area, 2),
                tau = config.adaptive ? config.adaptive->largest_step : config.grid.tau;
   return tau > 0 ? std::min(rate, 0.2 / tau) : rate;
 }
 
-Variant willmore_variant(const Run& run, const WillmoreProblem& problem, const WillmoreDefaults& defaults) {
+double relaxation_of(const Run& run) {
+  const EvolveConfig& config = run.config;
+  return config.variant.has("relaxation") ? config.variant.number("relaxation")
+                                          : suitable_relaxation(config, run.space.area(config.mesh.nodes));
+}
+
+/// A key of "variant" for advice, with two digits of its value; "" where the run has it already.
+std::string relaxation_to_try(const EvolveConfig& config) {
+  const double rate = suitable_relaxation(config, area_of_triangles(config.mesh));
+  if (!config.variant.has("relaxation") || config.variant.number("relaxation") > rate / 2) return "";
+  return format("\"relaxation\": %g", std::stod(format("%.1e", rate)));
+}
+
+std::string curvature_cure(const EvolveConfig& config) {
+  const std::string relaxation = relaxation_to_try(config),
+                    or_finer = "{\"reinitialise\": 0.05}, or " + resolving_mesh;
+  return "try \"variant\": " + (relaxation.empty() ? "" : "{" + relaxation + "} or ") + or_finer;
+}
+
+std::string willmore_cure(const EvolveConfig& config) {
+  const std::string relaxation = relaxation_to_try(config);
+  return "try " + smaller_steps(config) + (relaxation.empty() ? "" : ", \"variant\": {" + relaxation + "}") +
+         ", or " + even_elements;
+}
+
+Variant willmore_variant(const Run& run, const WillmoreProblem& problem) {
   const Settings& asked = run.config.variant;
   Variant variant;
   variant.law = problem.law;
   variant.prescribed = problem.prescribed;
   variant.F = asked.is("F", "extrapolated") ? Variant::extrapolated : Variant::implicit;
   variant.projection = projection_of(asked);
-  variant.relaxation = relaxation_of(run, defaults.relaxation);
+  variant.relaxation = relaxation_of(run);
   variant.reinitialise = asked.number_or("reinitialise", 0);
   if (asked.is("tangential", "minimal_deformation"))
     variant.tangential = MeanCurvatureFlow::Variant::minimal_deformation;
@@ -71,17 +97,36 @@ WillmoreStart willmore_start(const Run& run, const WillmoreProblem& problem) {
              : discrete_willmore_start(run.space, x0, law, prescribed);
 }
 
+}  // namespace
+
+void look_at_steps(const Run& run, const WillmoreFlow::State& state) {
+  const EvolveConfig& config = run.config;
+  const int n = run.recorder.newest().step, order = config.grid.order;
+  const bool is_time = n > 0 && (n % steps_between_comparisons == 0 || n == config.grid.steps);
+  if (config.adaptive || !is_time || !run.outcome.remark.empty() || !config.variant.is("F", "extrapolated"))
+    return;
+  const double a = largest_weingarten_squared(run.space, state.x, state.u),
+               bound = largest_extrapolated_step(order, a);
+  if (config.grid.tau <= bound) return;
+  run.outcome.remark = format("steps of %g with BDF%d are unstable where |A|² is %.3g, as it is at t = %g",
+                              config.grid.tau, order, a, state.t);
+  warn(run.outcome.remark + format("; try steps of at most %.2g", bound / 2) +
+       (order > 2 ? format(", %.2g with \"bdf\": 2", largest_extrapolated_step(2, a) / 2) : "") +
+       ", or \"adaptive\"");
+}
+
+namespace {
+
 Key theta_key(const json& otherwise) {
   const std::string help = "the correction (3.7)";
   return {Key::truth, "theta", otherwise,
           help + (otherwise.is_null() ? "; default: true with a \"surface\", false without" : "")};
 }
 
-Key relaxation_key(double otherwise) {
+Key relaxation_key(const json& otherwise) {
   const std::string help = "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau";
-  if (otherwise == 0) return {Key::not_negative, "relaxation", 0, help};
-  return {Key::not_negative, "relaxation", nullptr,
-          format("%s; default: %g (4 pi/area)², or 0.2/tau", help.c_str(), otherwise)};
+  return {Key::not_negative, "relaxation", otherwise,
+          help + (otherwise.is_null() ? "; default: 100 (4 pi/area)², or 0.2/tau" : "")};
 }
 
 }  // namespace
@@ -102,10 +147,10 @@ Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, 
       relaxation_key(defaults.relaxation),
       tangential_key(),
       reinitialise_key()};
-  entry.run = [problem, defaults](const Run& run) {
+  entry.run = [problem](const Run& run) {
     const WillmoreProblem chosen = problem(run);
     WillmoreStart start = willmore_start(run, chosen);
-    WillmoreFlow flow(run.space, willmore_variant(run, chosen, defaults), start.theta, limits_of(run));
+    WillmoreFlow flow(run.space, willmore_variant(run, chosen), start.theta, limits_of(run));
     flow.reinitialise(start.state);
     run_flow(flow, run, start.state);
   };
@@ -115,11 +160,8 @@ Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, 
   entry.starts = {{"nu", "H"}};
   if (starts_from_V) entry.starts.push_back({"nu", "H", "V", "z"});
   entry.evolves_curvature = entry.records_kappa_energy = true;
-  entry.curvature_cure =
-      "try \"variant\": {\"relaxation\": ..} or {\"reinitialise\": 0.05}, or " + resolving_mesh;
-  entry.cure = [](const EvolveConfig& config) {
-    return "try " + smaller_steps(config) + ", \"variant\": {\"relaxation\": ..}, or " + even_elements;
-  };
+  entry.curvature_cure = curvature_cure;
+  entry.cure = willmore_cure;
   return entry;
 }
 

@@ -20,8 +20,11 @@ struct WillmoreProblem {
 struct WillmoreDefaults {
   nlohmann::json project = true;
   nlohmann::json theta = nullptr;  ///< null: on with a "surface"
-  double relaxation = 0;           ///< in units of (4 pi/area)², and at most 0.2/tau
+  nlohmann::json relaxation = 0;   ///< null: 100 (4 pi/area)², or 0.2/tau, the smaller one
 };
+
+/// Warns once where equal steps are beyond largest_extrapolated_step.
+void look_at_steps(const Run& run, const WillmoreFlow::State& state);
 
 /// Everything but name, help, and parameters. Runs start from nu and H, with starts_from_V also from V, z.
 Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, bool starts_from_V = true,

@@ -26,9 +26,12 @@ std::pair<double, Vec3> area_and_moment(const Mesh& mesh) {
 
 }  // namespace
 
+double area_of_triangles(const Mesh& mesh) {
+  return area_and_moment(mesh).first;
+}
+
 double characteristic_length(const Mesh& mesh) {
-  const double area = area_and_moment(mesh).first;
-  const double exponent = std::round(std::log10(std::sqrt(area / (4 * pi))));
+  const double exponent = std::round(std::log10(std::sqrt(area_of_triangles(mesh) / (4 * pi))));
   return std::isfinite(exponent) ? std::pow(10, exponent) : 1;
 }
 

@@ -5,6 +5,9 @@
 
 namespace esfem {
 
+/// The area of the triangles between the corners.
+double area_of_triangles(const Mesh& mesh);
+
 /// The length L that defaults and scalings are relative to: the power of ten nearest to the radius of the
 /// sphere that has the area of the triangles between the corners. So surfaces of size one (radius 0.32
 /// to 3.2) have exactly 1; 1 as well where the area is 0 or not finite.

@@ -54,6 +54,8 @@ void at_step(int n, const double& t, Body&& body) {
     throw error.at(n, t);
   } catch (const ExtinctionError& error) {
     throw error.at(n, t);
+  } catch (const ToleranceError& error) {
+    throw error.at(n, t);
   } catch (const NumericsError& error) {
     throw error.at(n, t);
   }
@@ -238,7 +240,7 @@ inline bool is_last_to_resume(const GivenTimes&, const RunPosition&, double) {
 
 // Steps that follow the solution.
 
-/// Takes one step to next.t and returns the factor for the size of the following one. Throws NumericsError
+/// Takes one step to next.t and returns the factor for the size of the following one. Throws ToleranceError
 /// when the estimated error is more than 4 times the tolerance.
 template <class Flow>
 double attempt_step(Flow& flow, const AdaptiveSteps& steps, const History<typename Flow::State>& past,
@@ -256,8 +258,8 @@ double attempt_step(Flow& flow, const AdaptiveSteps& steps, const History<typena
   difference -= next.*controlled;
   const double error = root_mean_square(difference, steps.units);
   if (!(error <= 4 * steps.tolerance))
-    throw NumericsError(format("estimated error %g of a step of size %g: at most %g expected", error,
-                               next.t - past.back(0).t, 4 * steps.tolerance));
+    throw ToleranceError(format("estimated error %g of a step of size %g: at most %g expected", error,
+                                next.t - past.back(0).t, 4 * steps.tolerance));
   return step_factor(steps.tolerance, error);
 }
 

@@ -74,6 +74,30 @@ TEST_F(EvolveHelfrich, BecomesStationaryByDefault) {
   EXPECT_NEAR(energy_with(50, 4e-3), in_large_steps, 1e-12);
 }
 
+TEST_F(EvolveHelfrich, WarnsOfStepsThatAreUnstable) {
+  const json flat = {{"surface", {{"axes", {1.4, 1.2, 0.5}}}}, {"tau", 1e-3}, {"steps", 6}};
+  ASSERT_EQ(run(flow({}, flat)), exit_done) << message;
+  EXPECT_EQ(message.find("unstable"), std::string::npos) << message;
+  json high_order = flat;
+  high_order["bdf"] = 5;
+  run(flow({}, high_order));
+  EXPECT_THAT(message, HasSubstr("steps of 0.001 with BDF5 are unstable where |A|² is "));
+  EXPECT_THAT(message, HasSubstr(" with \"bdf\": 2, or \"adaptive\""));
+  high_order["bdf"] = nullptr;
+  high_order["variant"] = {{"F", "implicit"}};
+  run(flow({}, high_order));
+  EXPECT_EQ(message.find("unstable"), std::string::npos) << message;
+}
+
+TEST_F(EvolveHelfrich, AdaptiveStepsThatAreNotAccurateEnoughSayWhatToChange) {
+  const json adaptive = {{"bdf", nullptr},
+                         {"tau", nullptr},
+                         {"steps", nullptr},
+                         {"adaptive", {{"end_time", 1e-3}, {"tolerance", 1e-9}, {"first_step", 1e-4}}}};
+  EXPECT_EQ(run(flow({}, adaptive)), exit_numerics);
+  EXPECT_THAT(message, HasSubstr("try a larger tolerance, or a smaller first_step, such as 1e-06"));
+}
+
 TEST_F(EvolveHelfrich, ReachesAReducedVolume) {
   ASSERT_EQ(run(flow({{"reduced_volume", 0.94}, {"reduction_time", 3e-3}})), exit_done) << message;
   EXPECT_LT(std::abs(change("area")), 1e-12);

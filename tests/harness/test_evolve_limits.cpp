@@ -170,7 +170,15 @@ TEST_F(EvolveLimits, ACureIsNamedForEveryFlow) {
   config.variant = {};
   expect(2, "bgn", "try \"flow\": \"dziuk\" with \"degree\": 1; on some meshes even elements (");
   expect(1, "dziuk", "try \"flow\": \"bgn\"; on some meshes even elements (");
-  expect(2, "willmore", "try smaller steps, \"variant\": {\"relaxation\"");
+  config.mesh = icosphere(2, 2);
+  config.variant = Settings(json::object(), entry_named("willmore", "", "test").variant, "test");
+  expect(2, "willmore", "try smaller steps, \"variant\": {\"relaxation\": 6.5}, or even");
+  config.grid.tau = 0.1;
+  expect(2, "willmore", "try smaller steps, \"variant\": {\"relaxation\": 2}, or even");
+  EXPECT_THAT(config.entry->curvature_cure(config), StartsWith("try \"variant\": {\"relaxation\": 2} or {"));
+  config.variant = Settings({{"relaxation", 1.5}}, entry_named("willmore", "", "test").variant, "test");
+  expect(2, "willmore", "try smaller steps, or even");
+  EXPECT_THAT(config.entry->curvature_cure(config), StartsWith("try \"variant\": {\"reinitialise\""));
   expect(1, "cahn_hilliard", "try smaller steps, or even elements");
 }
 
@@ -183,8 +191,28 @@ TEST_F(EvolveLimits, SmallerStepsComeFirstWhereOneHasChangedMuch) {
                            {"tau", 0.2},
                            {"steps", 5}});
   ASSERT_EQ(run(ellipsoid), exit_numerics) << message;
-  EXPECT_THAT(status(), HasSubstr("; the last step has changed the area by 5"));
-  EXPECT_THAT(status(), HasSubstr("%: take smaller ones; if they do not help, try \"variant\""));
+  EXPECT_THAT(
+      status(),
+      HasSubstr("; the surface exists for 0.19 at most, and tau is 0.2: take smaller steps; if they do not "
+                "help, try \"variant\""));
+  ellipsoid.merge_patch({{"flow", "generalised_mean_curvature"}, {"tau", 0.05}});
+  ASSERT_EQ(run(ellipsoid), exit_numerics) << message;
+  EXPECT_THAT(status(), HasSubstr("; the last step has changed the area by "));
+  EXPECT_THAT(status(), HasSubstr("%: take smaller ones; if they do not help, try smaller steps"));
+}
+
+TEST_F(EvolveLimits, AMeshThatFailsBeforeTheCurvatureGrowsIsSaidToBeOne) {
+  // A dumbbell that pinches, and a mesh of which one element is folded by the flow.
+  json dumbbell = config({{"flow", "dziuk"},
+                          {"surface", {{"name", "dumbbell"}}},
+                          {"mesh", {{"file", nullptr}, {"edge_length", 0.2}, {"grading", 1}}},
+                          {"tau", 5e-4},
+                          {"steps", 400}});
+  EXPECT_EQ(run(dumbbell), exit_numerics);
+  EXPECT_THAT(status(), AllOf(HasSubstr("singular"), Not(HasSubstr("failure of the mesh")))) << message;
+  dumbbell.merge_patch({{"degree", 2}, {"bdf", 2}, {"tau", 3e-3}, {"start", "substeps:16"}});
+  EXPECT_EQ(run(dumbbell), exit_numerics);
+  EXPECT_THAT(status(), HasSubstr("failure of the mesh")) << message;
 }
 
 TEST_F(EvolveLimits, ASphereThatShrinksToNothingIsExtinct) {

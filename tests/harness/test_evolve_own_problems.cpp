@@ -355,6 +355,26 @@ TEST_F(OwnProblems, AParameterThatNoFormulaNamesIsRefused) {
                                      {"parameters", {{"k", 1}, {"kk", 2}}},
                                      {"initial", {{"u", "1"}}}});
   EXPECT_THAT(refusal(configuration), HasSubstr("parameters: found kk, which no formula names"));
+  json misspelt = configuration;
+  misspelt["parameters"] = {{"kappa", 1}};
+  misspelt["kinetics"]["f"] = {"kapa*u"};
+  EXPECT_THAT(refusal(misspelt), HasSubstr("unknown name \"kapa\""))
+      << "the name that is wrong, not what it leaves unused";
+}
+
+TEST_F(OwnProblems, FormulasBesideAFileAreRefusedWithWhatToDo) {
+  const json both = config({{"flow", "coupled_diffusion"},
+                            {"problem", "kinetics"},
+                            {"mesh", nullptr},
+                            {"surface", nullptr},
+                            {"kinetics", {{"f", {"u"}}, {"diffusion", {1}}}},
+                            {"initial", {{"file", "end.json"}, {"u", "1"}}}});
+  EXPECT_THAT(refusal(both), AllOf(HasSubstr("found u beside file"), HasSubstr("\"mesh\": {\"file\": ..}")));
+}
+
+TEST_F(OwnProblems, NoStepsAreToldSo) {
+  EXPECT_EQ(run(config({{"flow", "dziuk"}, {"steps", nullptr}})), exit_done);
+  EXPECT_THAT(message, HasSubstr("no step was asked for: \"steps\" is 0"));
 }
 
 TEST_F(OwnProblems, KineticsThatBlowUpEndAsSingular) {
