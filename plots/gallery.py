@@ -32,8 +32,7 @@ def headline(results):
     rows = {}
     for key in (*PAPER_KEYS, "beyond"):
         published, others = counts(of_section(placed, key))
-        pairs = [others.get(basis, (0, 0)) for basis in COUNTED_BASES]
-        rows[key] = [*(str(published[column] or "–") for column in COLUMNS), *(f"{hold} of {number}" if number else "–" for hold, number in pairs)]
+        rows[key] = [*(str(published[column] or "–") for column in COLUMNS), *(others.get(basis, "–") for basis in COUNTED_BASES)]
     return headline_table(rows)
 
 

@@ -100,7 +100,11 @@ def main():
         if not arguments.field:
             print("\n".join(names_of(read_surface(files[-1][1]))))
             return
-        chosen = nearest(files, times_of(arguments.times) if arguments.times else equal_times(files))
+        times = times_of(arguments.times) if arguments.times else equal_times(files)
+        chosen = nearest(files, times)
+        if arguments.times and len(chosen) < len(times):
+            print(f"{parser.prog}: pictures: {len(chosen)} instead of {len(times)}; the times of {arguments.collection} are "
+                  + ", ".join(f"{t:g}" for t, _ in files), file=sys.stderr)
         figure = figure_of(chosen, arguments.field)
         os.makedirs(os.path.dirname(os.path.abspath(arguments.output)), exist_ok=True)
         try:

@@ -155,14 +155,20 @@ def _check_figures(statement, paper, known):
 
 
 def counts(statements):
-    """{verdict: number}, of the papers' statements, and {basis: (that hold, all)}, of theory and independent values."""
+    """{verdict: number}, of the papers' statements, and {basis: words}, of theory and independent values: how many hold, and, as
+    "10; 1 cannot be told", what of the others."""
     of_basis = {}
     for statement in statements:
         of_basis.setdefault(statement.source["basis"], []).append(statement)
     published = {name: sum(s.verdict == name for s in of_basis.get("statement", [])) for name in SEVERITY}
-    others = {basis: (sum(s.verdict in HOLDING for s in of_basis[basis]), len(of_basis[basis]))
-              for basis in COUNTED_BASES if basis in of_basis}
+    others = {basis: _that_hold(of_basis[basis]) for basis in COUNTED_BASES if basis in of_basis}
     return published, others
+
+
+def _that_hold(statements):
+    others = [f"{number} {name}" for name in SEVERITY if name not in HOLDING
+              for number in [sum(s.verdict == name for s in statements)] if number]
+    return "; ".join([str(sum(s.verdict in HOLDING for s in statements)), *others])
 
 
 def own_counts(results):

@@ -30,9 +30,7 @@ def counts_table(placed):
         to = {"reproduced": f"{section}-claims"} if section != "beyond" else {}
         where = "beyond" if section == "beyond" else f"{section}-differences"
         cells = [link(to.get(name, where), str(published[name])) if published[name] else "" for name in columns]
-        for basis in COUNTED_BASES:
-            hold, all_of_them = others.get(basis, (0, 0))
-            cells.append(f"{hold} of {all_of_them}" if all_of_them else "")
+        cells += [others.get(basis, "") for basis in COUNTED_BASES]
         rows.append([link(section, text(title)), *cells])
     return table(["statements of", *(badge(name) for name in columns), *COUNTED_BASES.values()], rows, "counts")
 

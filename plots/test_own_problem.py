@@ -85,6 +85,9 @@ class OwnProblem(unittest.TestCase):
         output = os.path.join(os.path.dirname(path), "new", "folder", "v.png")
         self.assertEqual(self.said(path, "v", output, "--times", "0.4"), "")
         self.assertTrue(os.path.getsize(output))
+        with contextlib.redirect_stderr(io.StringIO()) as told:
+            self.said(path, "v", output, "--times", "0.4,0.5,2")
+        self.assertRegex(told.getvalue(), "pictures: 1 instead of 3; the times of .* are 0, 0.5\n$")
         for wrong, words in (((path, "u"), "expected OUTPUT.png"), ((path, "w", output), "no field w"),
                              ((path, "u", f"{output}.strange"), "strange")):
             with self.assertRaises(SystemExit) as end:
