@@ -157,7 +157,8 @@ void check_closed(const Mesh& mesh, const MeshOrigin& origin, const std::vector<
        format("not closed, %zu boundary loop%s; the longest has %d edge%s, length %g and the edge ",
               loops.size(), loops.size() > 1 ? "s" : "", longest.sides, longest.sides > 1 ? "s" : "",
               longest.length) +
-           between(mesh, origin, longest.side) + ", a closed surface expected: fill holes first (MeshLab, Close Holes)");
+           between(mesh, origin, longest.side) +
+           ", a closed surface expected: fill holes first (MeshLab, Close Holes)");
 }
 
 /// The triangles at every corner form one fan.
