@@ -124,9 +124,10 @@ Key theta_key(const json& otherwise) {
 }
 
 Key relaxation_key(const json& otherwise) {
-  const std::string help = "rate (1/time) of relaxation to the geometry of the surface; at most 0.2/tau";
+  const std::string help = "rate (1/time) of relaxation to the geometry of the surface, for long runs; ";
   return {Key::not_negative, "relaxation", otherwise,
-          help + (otherwise.is_null() ? "; default: 100 (4 pi/area)², or 0.2/tau" : "")};
+          help + (otherwise.is_null() ? "default: 100 (4 pi/area)², or 0.2/tau, the smaller one"
+                                      : "such as 100 (4 pi/area)², at most 0.2/tau")};
 }
 
 }  // namespace
@@ -171,7 +172,9 @@ std::vector<Entry> willmore_entries() {
             willmore_entry([](const Run&) { return WillmoreProblem{surface_diffusion_law()}; });
   willmore.flow = "willmore";
   willmore.energy = "willmore_energy";
-  willmore.help = "Willmore flow by kll21 (3.4)-(3.5): V = Delta H + Q, which decreases 1/2 int H²";
+  willmore.help =
+      "Willmore flow by kll21 (3.4)-(3.5): V = Delta H + Q, which decreases 1/2 int H²; in the series "
+      "willmore_energy is that of H_h, kappa_energy that of the surface itself";
   surface_diffusion.flow = "surface_diffusion";
   surface_diffusion.energy = "area";
   surface_diffusion.help =
