@@ -105,13 +105,13 @@ void look_at_steps(const Run& run, const WillmoreFlow::State& state) {
   const bool is_time = n > 0 && (n % steps_between_comparisons == 0 || n == config.grid.steps);
   if (config.adaptive || !is_time || !run.outcome.remark.empty() || !config.variant.is("F", "extrapolated"))
     return;
-  const double a = largest_weingarten_squared(run.space, state.x, state.u),
-               bound = largest_extrapolated_step(order, a);
-  if (config.grid.tau <= bound) return;
-  run.outcome.remark = format("steps of %g with BDF%d are unstable where |A|² is %.3g, as it is at t = %g",
-                              config.grid.tau, order, a, state.t);
-  warn(run.outcome.remark + format("; try steps of at most %.2g", bound / 2) +
-       (order > 2 ? format(", %.2g with \"bdf\": 2", largest_extrapolated_step(2, a) / 2) : "") +
+  const double A_squared = largest_weingarten_squared(run.space, state.x, state.u), tau = config.grid.tau,
+               bound = stable_willmore_step(order, A_squared);
+  if (tau <= bound) return;
+  run.outcome.remark = format("steps of %g with BDF%d can be unstable where |A|² is %.3g, as it is at t = %g",
+                              tau, order, A_squared, state.t);
+  warn(run.outcome.remark + format("; try steps of at most %.2g", bound) +
+       (order > 2 ? format(", %.2g with \"bdf\": 2", stable_willmore_step(2, A_squared)) : "") +
        ", or \"adaptive\"");
 }
 

@@ -23,7 +23,7 @@ struct WillmoreDefaults {
   nlohmann::json relaxation = 0;   ///< null: 100 (4 pi/area)², or 0.2/tau, the smaller one
 };
 
-/// Warns once where equal steps are beyond largest_extrapolated_step.
+/// Warns once where equal steps are beyond stable_willmore_step.
 void look_at_steps(const Run& run, const WillmoreFlow::State& state);
 
 /// Everything but name, help, and parameters. Runs start from nu and H, with starts_from_V also from V, z.

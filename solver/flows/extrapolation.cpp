@@ -14,6 +14,11 @@ double largest_extrapolated_step(int order, double a) {
   return 4 * delta / std::pow((std::ldexp(1.0, order) - 1) * a, 2);
 }
 
+double stable_willmore_step(int order, double A_squared) {
+  const double factors[] = {2.5, 2.5, 3, 5, 20};
+  return largest_extrapolated_step(order, A_squared) / factors[order - 1];
+}
+
 double largest_weingarten_squared(const SurfaceSpace& space, const Field& x, const Field& u) {
   double largest = 0;
   const auto look = [&largest](const PointData<4>& p, Integrand<1, 0>& load) {
