@@ -13,7 +13,7 @@ SCREEN_WIDTH = 1340  # pixels of a picture at most: 17 cm at 200 dpi
 
 
 def text(words):
-    """A sentence of a claim as HTML: Greek letters by name, h^2, H1, x1, x_h and >= become signs."""
+    """A sentence of a claim as HTML: Greek letters by name, h^2, H1, x1, x_h, >= and 1e-3 become signs."""
     escaped = html.escape(words, quote=False)
     escaped = escaped.replace("-&gt;", "→").replace("+-", "±").replace("&gt;=", "≥").replace("&lt;=", "≤")
     escaped = re.sub(r"\b(" + "|".join(SYMBOLS) + r")(?=\b|[_²³⁴]|\d)", lambda match: SYMBOLS[match[1]], escaped)

@@ -61,9 +61,8 @@ std::string mesh_failure_remark(const EvolveConfig& config, const Series& series
   const double first = max_H->second.front(), last = max_H->second.back();
   if (!(last < 2.5 * first)) return "";
   return format(
-      "max |H| has hardly grown (%.3g at the start, %.3g now), so this may be a failure of the mesh, and not "
-      "a "
-      "singularity of the surface; ",
+      "max |H| has hardly grown (%.3g at the start, %.3g now), so this may be a failure of the mesh, "
+      "and not a singularity of the surface; ",
       first, last);
 }
 

@@ -321,8 +321,8 @@ Keys read_keys(const json& given, const std::string& source) {
   }
   if (config.stop.area && is_at_rest(config))
     throw InputError(source + ": stop: found area, but the surface is at rest; expected speed or seconds");
-  if (entry.check)
-    entry.check(config, source);  // names an unknown name in a formula, before what it leaves unused
+  // An unknown name in a formula is told before the parameter that it leaves unused.
+  if (entry.check) entry.check(config, source);
   if (entry.takes_own_parameters) require_named_parameters(reader, config);
   if (reader.has("degree")) keys.degree = reader.integer_within("degree", 0, 1, max_degree);
   return keys;

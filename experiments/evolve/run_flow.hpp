@@ -30,7 +30,7 @@ struct ReactionDiffusionState;
 
 /// What a run says at its end beside its records.
 struct Outcome {
-  std::string remark;          ///< for the status: empty, or that nu and H deviate from the surface
+  std::string remark;          ///< for the status: empty, or the first thing that is doubtful
   std::string ended;           ///< why it ended before its last step, as "stop" asks; empty: it did not
   bool is_unfinished = false;  ///< its time was over
   nlohmann::json history;      ///< for the nodal output; null: none

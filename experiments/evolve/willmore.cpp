@@ -97,6 +97,19 @@ WillmoreStart willmore_start(const Run& run, const WillmoreProblem& problem) {
              : discrete_willmore_start(run.space, x0, law, prescribed);
 }
 
+Key theta_key(const json& otherwise) {
+  const std::string help = "the correction (3.7)";
+  return {Key::truth, "theta", otherwise,
+          help + (otherwise.is_null() ? "; default: true with a \"surface\", false without" : "")};
+}
+
+Key relaxation_key(const json& otherwise) {
+  const std::string help = "rate (1/time) of relaxation to the geometry of the surface, for long runs; ";
+  return {Key::not_negative, "relaxation", otherwise,
+          help + (otherwise.is_null() ? "default: 100 (4 pi/area)², or 0.2/tau, the smaller one"
+                                      : "such as 100 (4 pi/area)², at most 0.2/tau")};
+}
+
 }  // namespace
 
 void look_at_steps(const Run& run, const WillmoreFlow::State& state) {
@@ -114,23 +127,6 @@ void look_at_steps(const Run& run, const WillmoreFlow::State& state) {
        (order > 2 ? format(", %.2g with \"bdf\": 2", stable_willmore_step(2, A_squared)) : "") +
        ", or \"adaptive\"");
 }
-
-namespace {
-
-Key theta_key(const json& otherwise) {
-  const std::string help = "the correction (3.7)";
-  return {Key::truth, "theta", otherwise,
-          help + (otherwise.is_null() ? "; default: true with a \"surface\", false without" : "")};
-}
-
-Key relaxation_key(const json& otherwise) {
-  const std::string help = "rate (1/time) of relaxation to the geometry of the surface, for long runs; ";
-  return {Key::not_negative, "relaxation", otherwise,
-          help + (otherwise.is_null() ? "default: 100 (4 pi/area)², or 0.2/tau, the smaller one"
-                                      : "such as 100 (4 pi/area)², at most 0.2/tau")};
-}
-
-}  // namespace
 
 Entry willmore_entry(const std::function<WillmoreProblem(const Run&)>& problem, bool starts_from_V,
                      const WillmoreDefaults& defaults) {

@@ -18,9 +18,8 @@ double largest_extrapolated_step(int order, double a);
 
 /// A step size up to which (3.5) with extrapolated F was stable, where |A|² is at most A_squared: the bound
 /// above with a = |A|², divided by a factor, since (3.5) is a system and a is |A|² only in size. Measured on
-/// a vesicle
-/// (|A|² = 11.8) and on the Clifford torus (13.7): the steps of BDF2, 3 and 4 become unstable at 1/2.2 and
-/// 1/1.5, 1/2.7 and 1/1.1, 1/4.5 and 1/3.7 of the bound, those of BDF5 on the vesicle below 1/13 of it.
+/// a vesicle (|A|² = 11.8) and on the Clifford torus (13.7): the steps of BDF2, 3 and 4 become unstable at
+/// 1/2.2 and 1/1.5, 1/2.7 and 1/1.1, 1/4.5 and 1/3.7 of the bound, those of BDF5 on the vesicle below 1/13.
 double stable_willmore_step(int order, double A_squared);
 
 /// The largest |A_h|² in the quadrature points of Gamma_h[x], with u = (H, nu), N x 4.

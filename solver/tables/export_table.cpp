@@ -282,12 +282,12 @@ std::string to_latex(const Table& table) {
   std::set<std::string> norms;
   for (const auto& [quantity, norm] : error_names(table)) norms.insert(norm);
   if (!value_names(table).empty()) text += "\n" + latex_values(table);
+  const std::vector<Direction> shown = directions(table);
   for (const std::string& norm : norms) {
     std::vector<std::string> quantities;
     for (const auto& name : error_names(table))
       if (name.second == norm) quantities.push_back(name.first);
-    for (Direction direction : directions(table))
-      text += "\n" + latex_table(table, direction, quantities, norm);
+    for (Direction direction : shown) text += "\n" + latex_table(table, direction, quantities, norm);
   }
   return text;
 }
